@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <toml.hpp>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -104,8 +106,12 @@ TomlValue read_toml(const std::filesystem::path& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored))
         throw InputError(file.string(), "", "is a directory", "a TOML file");
+    errno = 0;
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string(), "", "cannot be opened", "a TOML file");
+    if (!stream)
+        throw InputError(file.string(), "",
+                         fmt::format("cannot be opened: {}", std::strerror(errno != 0 ? errno : EIO)),
+                         "a TOML file");
     std::string text(kLargestFile + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));

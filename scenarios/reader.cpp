@@ -119,7 +119,8 @@ std::vector<double> Reader::numbers(std::string_view key, const TomlValue& value
                                     std::size_t count) {
     const auto* array = std::get_if<TomlArray>(&value.data);
     if (!array || array->size() != count)
-        fail(key, fmt::format("{} is not a list of {}", key, count), example_of(dimension));
+        fail(key, fmt::format("{} is not a list of {}", key, count),
+             fmt::format("{}, each {}", count, example_of(dimension)));
     std::vector<double> result;
     for (const TomlValue& item : *array)
         result.push_back(number(key, item, dimension));

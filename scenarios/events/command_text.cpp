@@ -184,7 +184,7 @@ TomlValue parse_command_text(std::string_view text) {
             verbs.push_back(form.verb);
         const std::string meant = nearest_name(verb, verbs);
         fail(fmt::format("'{}' is unknown", verb),
-             meant.empty() ? "one of " + known_verbs() : fmt::format("perhaps '{}'", meant));
+             meant.empty() ? "list, or one of " + known_verbs() : fmt::format("perhaps '{}'", meant));
     }
     // Of add the first word is the kind, which says what the keys are.
     const auto keys = keys_of(verb, words.size() > 1 ? words[1].text : "");

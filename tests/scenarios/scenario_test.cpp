@@ -147,9 +147,10 @@ TEST_CASE("what cannot be run is refused with its line") {
           std::string::npos);
     CHECK(problem_of(kArena + "[[robot]]\nname = \"a b\"\nposition = [\"0 m\", \"0 m\"]\n")
               .starts_with("line 6: "));
-    CHECK(problem_of(
-              kArena + "[[box]]\nname = \"b\"\ncentre = [\"0 m\", \"0 m\"]\nsize = [\"1 cm\", \"1 cm\"]\n" +
-              kRobot) == "line 8: box 1: size is not a list of 3 (expected a length such as \"25 cm\")");
+    CHECK(problem_of(kArena +
+                     "[[box]]\nname = \"b\"\ncentre = [\"0 m\", \"0 m\"]\nsize = [\"1 cm\", \"1 cm\"]\n" +
+                     kRobot) ==
+          "line 8: box 1: size is not a list of 3 (expected 3, each a length such as \"25 cm\")");
 }
 
 TEST_CASE("loudspeakers play tones, sweeps and noise, once or again") {
