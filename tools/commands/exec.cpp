@@ -150,8 +150,9 @@ void describe(Command& app, Arguments& a) {
                    "one): lines `<time_s> w "
                    "<0xADDR> <hex bytes>` or `<time_s> r <0xADDR> <register or -> <count>`");
     app.add_option("--i2c-device", o.i2c_devices,
-                   "on the bus of a target that is its master, repeatable: ground (0x60), turret (0x61) or "
-                   "rab=IMAGE (a range-and-bearing board with its firmware); @0xADDR behind it for another "
+                   "on the bus of a target that is its master, repeatable: ground (0x60), turret (0x61), "
+                   "lsm330 (0x1E, 0x6A) or rab=IMAGE (a range-and-bearing board with its firmware); @0xADDR "
+                   "behind it for another "
                    "address")
         ->allow_extra_args(false);
     app.add_option("--i2c-clock", o.i2c_master.clock_hertz, "its SCL in Hz")
