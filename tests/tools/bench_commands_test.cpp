@@ -68,6 +68,7 @@ TEST_CASE("the help of puckloop bench explains every case on a line of its own")
 }
 
 TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetooth]") {
+    check_refused("bench --scenario /nowhere.toml", "/nowhere.toml: --scenario: no such file");
     check_refused("bench bluetooth --boards", "--boards and --firmware IMAGE");
     check_refused("bench bluetooth --firmware x.hex", "--boards and --firmware IMAGE");
     check_refused("bench bluetooth --boards --firmware nowhere.hex --out " + scratch_path("refused").string(),

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <csignal>
 #include <filesystem>
 #include <thread>
 
@@ -72,6 +73,15 @@ TEST_CASE("packets come before the run ends, and it goes on when their reader ha
     CHECK(run.status == 0);
     CHECK_THAT(shell("cat " + said).out, Catch::Contains("its reader has gone; the run goes on"));
     CHECK(std::filesystem::exists(out + "/report.json"));
+}
+
+TEST_CASE("a run that nobody reads can be interrupted, with the status of Ctrl-C") {
+    const std::string out = scratch("alone"), pipe = scratch("alone.pipe");
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    const Called run = shell(fmt::format("timeout --preserve-status -s INT 1 {} {} 2>&1", PUCKLOOP_PROGRAM,
+                                         run_with("--live " + pipe, out)));
+    CHECK(run.status == 128 + SIGINT);
+    CHECK_THAT(run.out, Catch::Contains("interrupted while nobody read " + pipe));
 }
 
 TEST_CASE("what cannot be written live is refused in one line, a full disk when it is full") {

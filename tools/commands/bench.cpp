@@ -1,5 +1,6 @@
 // `puckloop bench`: performance figures, each measured beside a reference that the same machine runs in turn.
 
+#include "base/error.h"
 #include "emu/chip/translation_switch.h"
 #include "tools/bench/cases.h"
 #include "tools/cli/check.h"
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 namespace puckloop::tools {
@@ -26,6 +28,9 @@ struct Options {
 
 void run(const Options& options) {
     if (options.bench.interpret) chip::set_translation(false);
+    if (const std::filesystem::path file = options.bench.scenario;
+        !file.empty() && !std::filesystem::is_regular_file(file))
+        throw InputError(file.string(), "--scenario", "no such file", "a scenario's TOML file");
     const OtherLoadMeter meter;
     const std::vector<Figure> figures = measure_cases(options.bench);
     fmt::print("{}",

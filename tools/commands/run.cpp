@@ -105,8 +105,15 @@ int run(Options& options) {
         fmt::print(stderr, "the first {:g} s are not paced: the boards boot\n",
                    cosim::to_seconds(setup.ready));
     StatusLine status_line(setup.scenario.duration);
-    const cosim::Outcome outcome = run_scenario(
-        setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
+    cosim::Outcome outcome;
+    try {
+        outcome = run_scenario(
+            setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
+    } catch (const RunError& error) {  // Ctrl-C before it began, while it waited for a reader of --live
+        if (*interrupt.flag() == 0) throw;
+        fmt::print(stderr, "puckloop: {}\n", error.what());
+        return 128 + *interrupt.flag();
+    }
     status_line.clear();
     std::exception_ptr failed;  // of an export: what came of the run is shown first
     try {
@@ -249,7 +256,7 @@ void declare_run(Command& app, int& status) {
     command->add_flag("--no-cache", options->no_cache,
                       "execute every board's boot, and keep none in the cache (docs/scenario.md)");
     command->add_flag("--list-parameters", options->list_parameters,
-                      "print every physical parameter and where its value comes from");
+                      "print every physical parameter with its default, its range and where they come from");
     command->add_flag("--json", options->json, "print only the path of report.json");
     declare_log_options(*command, options->log);
     command->callback([options, &status] { status = run(*options); });
