@@ -39,6 +39,9 @@ Scenario read_scenario(const std::filesystem::path& file) {
         scenario.seed =
             static_cast<std::uint64_t>(run.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
         scenario.world.recording.period = run.quantity("record_every", Dimension::Time, 0.1);
+        if (const double steps = scenario.world.recording.period * 1e3;
+            steps < 1.0 || steps > 3.6e6 || std::abs(steps - std::round(steps)) > 1e-6)
+            run.fail("record_every", "record_every is out of range", "a multiple of 1 ms, at most 1 h");
         scenario.uart_baud = run.quantity("uart_baud", Dimension::Number, scenario.uart_baud);
         if (scenario.uart_baud < 300 || scenario.uart_baud > 4e6)
             run.fail("uart_baud", "uart_baud is out of range", "300 to 4000000");

@@ -168,9 +168,12 @@ TEST_CASE("traces, watches and statistics of a dsPIC without symbols") {
         CHECK(refused.status == 2);
         CHECK(exec::one_line(refused.err));
     }
-    const auto nowhere = bench.run(what + "--cycles 100 --trace /nowhere/trace");
-    CHECK(nowhere.status == 2);
-    CHECK_THAT(nowhere.err, Catch::Contains("/nowhere/trace: cannot be written: No such file or directory"));
+    for (const char* output : {"--trace", "--callgrind"}) {
+        const auto nowhere = bench.run(fmt::format("{}--cycles 100 {} /nowhere/file", what, output));
+        CHECK(nowhere.status == 2);
+        CHECK_THAT(nowhere.err,
+                   Catch::Contains("/nowhere/file: cannot be written: No such file or directory"));
+    }
 }
 
 TEST_CASE("profile and coverage of a C program with interrupts") {

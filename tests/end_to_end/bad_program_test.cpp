@@ -39,7 +39,7 @@ TEST_CASE("a program that cannot run is refused before the run") {
         check_one_line(with_program(bench, {}, {program}), 2, words);
         CHECK(!std::filesystem::exists(bench.out("o")));
     };
-    refused(bench.folder() / "nowhere", {"nowhere", "No such file"});
+    refused(bench.folder() / "nowhere", {"robot0.linux: ", "nowhere", "No such file"});
     refused("no-such-program-anywhere", {"no-such-program-anywhere"});
     refused(plain, {"plain", "not executable", "chmod +x"});
     refused(bench.folder(), {"is not a file"});

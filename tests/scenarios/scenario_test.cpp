@@ -145,6 +145,8 @@ TEST_CASE("what cannot be run is refused with its line") {
     CHECK(problem_of(with_linux + "restart = [\"3 s\", \"2 s\"]\n").find("do not rise") != std::string::npos);
     CHECK(problem_of(with_linux + "start = \"5 s\"\nrestart = [\"1 s\"]\n").find("do not rise") !=
           std::string::npos);
+    CHECK(problem_of("[run]\nrecord_every = \"1500 us\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n" + kRobot) ==
+          "line 2: run: record_every is out of range (expected a multiple of 1 ms, at most 1 h)");
     CHECK(problem_of(kArena + "[[robot]]\nname = \"a b\"\nposition = [\"0 m\", \"0 m\"]\n")
               .starts_with("line 6: "));
     CHECK(problem_of(kArena +

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 
 namespace puckloop::exec {
@@ -37,10 +39,20 @@ debug::AddressRange range_of(const std::string& text, const image::Image& image,
                      "a function of the image, or 0xFIRST..0xLAST");
 }
 
+/// What is written when the run is over is refused before it begins.
+void check_place(const std::string& path) {
+    std::ofstream out(path, std::ios::binary | std::ios::app);
+    if (!out)
+        throw InputError(path, "", fmt::format("cannot be written: {}", std::strerror(errno)),
+                         "a place in a folder that exists and may be written");
+}
+
 void write_file(const std::string& path, const std::string& text) {
     std::ofstream out(path, std::ios::binary);
     out << text;
-    if (!out.flush()) throw RunError(path + ": cannot be written");
+    if (!out.flush())
+        throw RunError(
+            fmt::format("{}: cannot be written: {}", path, std::strerror(errno != 0 ? errno : EIO)));
 }
 
 }  // namespace
@@ -140,6 +152,8 @@ BenchInstruments::BenchInstruments(const InstrumentOptions& options, Target& tar
     if (!options.coverage.empty() && places_.lines().empty())
         throw InputError(image.file, "--coverage", "the image has no source lines",
                          "an ELF with debug information (-g)");
+    for (const std::string& file : {options.callgrind, options.coverage})
+        if (!file.empty()) check_place(file);
     for (const std::string& text : options.watches)
         watches_->add(text, image);
     if (!options.trace.empty()) {

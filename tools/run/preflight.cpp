@@ -1,5 +1,6 @@
 #include "tools/run/preflight.h"
 
+#include "base/error.h"
 #include "linuxboard/shim/program_file.h"
 #include "tools/run/node_factory.h"
 
@@ -10,12 +11,25 @@
 
 namespace puckloop::tools {
 
+namespace {
+
+/// Names the board whose program it is: a swarm has many, and a scenario may give each another.
+void check_program(const std::string& node, const std::string& program) {
+    try {
+        linuxboard::find_program(program);
+    } catch (const InputError& error) {
+        throw InputError("", node, error.what());
+    }
+}
+
+}  // namespace
+
 void check_files(const RunSetup& setup) {
     std::set<std::string> known;  // robots of a swarm differ in little else than their names
     for (const cosim::NodeSpec& node : setup.nodes) {
         auto spec = nlohmann::json::parse(node.json);
         spec.erase("log");  // this one leaves nothing on disk
-        if (spec.at("kind") == "linux") linuxboard::find_program(spec.at("program"));
+        if (spec.at("kind") == "linux") check_program(node.name, spec.at("program"));
         if (spec.at("kind") != "pic" && spec.at("kind") != "rab" && spec.at("kind") != "tam") continue;
         auto what = spec;
         what.erase("name");
