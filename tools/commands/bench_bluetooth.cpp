@@ -87,7 +87,9 @@ void run(const Options& options, int& status) {
                          "--boards and --firmware IMAGE together");
     std::error_code failed;
     std::filesystem::create_directories(options.out, failed);
-    if (failed) throw RunError(fmt::format("cannot make {}: {}", options.out.string(), failed.message()));
+    if (failed)
+        throw InputError(options.out.string(), "--out", "cannot be made: " + failed.message(),
+                         "a folder for results");
     const ExchangeTimes times = options.boards ? by_boards(options) : by_modules(options);
     const std::string name = options.boards ? options.firmware.filename().string() : "drawn";
     save(options.out / "exchanges.svg", exchange_picture(times, name));

@@ -69,7 +69,9 @@ void run(Options& options, int& status) {
     take_parameters(options);
     std::error_code failed;
     std::filesystem::create_directories(options.out, failed);
-    if (failed) throw RunError(fmt::format("cannot make {}: {}", options.out.string(), failed.message()));
+    if (failed)
+        throw InputError(options.out.string(), "--out", "cannot be made: " + failed.message(),
+                         "a folder for results");
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const cosim::InterruptGuard interrupt;
     const RabMeasured measured = measure_rab(

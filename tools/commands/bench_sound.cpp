@@ -104,7 +104,9 @@ void run(Options& options, int& status) {
     if (sound.walker.empty()) sound.walker = sound.firmware;
     std::error_code failed;
     std::filesystem::create_directories(options.out, failed);
-    if (failed) throw RunError(fmt::format("cannot make {}: {}", options.out.string(), failed.message()));
+    if (failed)
+        throw InputError(options.out.string(), "--out", "cannot be made: " + failed.message(),
+                         "a folder for results");
     sound.folder = options.out / "trials";
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const TrialProgress progress = [terminal](int trial, int trials) {

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <memory>
 
@@ -36,10 +38,15 @@ void write_script(const std::vector<BootPacket>& packets, const std::string& fil
     for (const BootPacket& packet : packets)
         add(packet);
     add(boot_end());
+    errno = 0;
     std::ofstream stream(file);
+    if (!stream)
+        throw InputError(file, "--script",
+                         fmt::format("cannot be written: {}", std::strerror(errno != 0 ? errno : EIO)),
+                         "a place in a folder that exists and may be written");
     stream << lines;
     stream.close();
-    if (!stream) throw RunError(fmt::format("cannot write {}", file));
+    if (!stream) throw RunError(fmt::format("{}: cannot be written to the end", file));
     fmt::print("{} rows, {:.2f} s to {:.2f} s: {}\n", packets.size(), at, time, file);
 }
 
