@@ -78,7 +78,7 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const
         if (next != speed) curve.jumps.push_back({time[i], next - speed, speed});
         if (next == 0.0)
             wait = 0.0;
-        else if (speed == 0.0 && !begins)  // before the first row it may have run already
+        else if (speed * next <= 0.0 && !begins)  // before the first row it may have run already
             wait = motor.start_loss;
         speed = next;
     }

@@ -20,8 +20,8 @@ enum class MotorDriver { Agenda, Timer };
 
 struct Motor {
     MotorDriver driver = MotorDriver::Agenda;
-    /// Steps that each start from standing makes too few, at its beginning: the first comes late, and the
-    /// rotor does not make the last before the coils are cut.
+    /// Steps that each start, from standing or the other way round, makes too few at its beginning: the first
+    /// comes late, and the rotor runs a step behind its coils.
     double start_loss = 0.0;
 };
 

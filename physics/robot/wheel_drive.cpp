@@ -7,10 +7,11 @@
 namespace puckloop::physics {
 
 namespace {
-constexpr double kPolePair = 4.0;  // steps after which the coils' pattern repeats
-constexpr double kOverdue = 1.5;   // intervals after which no further step is expected
-constexpr double kSlowest = 0.2;   // s: steps further apart do not drive a wheel
-constexpr double kStands = 0.1;    // s without a step: the motor stands
+constexpr double kPolePair = 4.0;    // steps after which the coils' pattern repeats
+constexpr double kFallsBack = 0.25;  // least share of its steps that a rotor misses until a group is lost
+constexpr double kOverdue = 1.5;     // intervals after which no further step is expected
+constexpr double kSlowest = 0.2;     // s: steps further apart do not drive a wheel
+constexpr double kStands = 0.1;      // s without a step: the motor stands
 }  // namespace
 
 WheelDrive::WheelDrive(const BodyParameters& parameters, RandomStream losses)
@@ -33,11 +34,19 @@ void WheelDrive::step_to(double steps, double seconds) {
     if (parameters_.deadband > 0.0) hold_if_slow(change, interval);
 }
 
+/// A rotor that falls out of step runs slower until the coils' pattern has come round to it: the robot's mass
+/// carries it on, and nothing throws it back.
 void WheelDrive::lose_at_speed(double change, double interval) {
     const double speed = std::abs(change) / std::max(interval, 1e-6);
     const double x = (speed - parameters_.step_loss_speed) / parameters_.step_loss_width;
     const double share = 1.0 / (1.0 + std::exp(-x));
-    if (losses_.uniform() < share * std::abs(change) / kPolePair) lost_ += std::copysign(kPolePair, change);
+    if (change * to_lose_ < 0 || interval > kStands) to_lose_ = 0.0;
+    if (losses_.uniform() < share * std::abs(change) / kPolePair)
+        to_lose_ += std::copysign(kPolePair, change);
+    const double slower = (share + (1 - share) * kFallsBack) * std::abs(change);
+    const double missed = std::copysign(std::min(std::abs(to_lose_), slower), change);
+    to_lose_ -= missed;
+    lost_ += missed;
 }
 
 /// Of steps that are too slow the rotor leans towards the last one only: whether it is the first of a drive

@@ -50,6 +50,7 @@ class WheelDrive {
     double from_ = 0.0;        // rotor position in steps when the last step came
     double begun_ = 0.0;       // s, when it came
     double duration_ = 0.0;    // s, until the rotor has arrived
+    double to_lose_ = 0.0;     // steps still missing of groups that are being lost, signed
     double last_step_ = -1e9;  // s
     double interval_ = 0.0;    // s, between the last two steps
     double change_ = 0.0;      // steps, the last one

@@ -190,6 +190,31 @@ TEST_CASE("a drift acts in the world's axes while the wheels are driven, however
     CHECK(std::hypot(standing.x, standing.y) < 1e-5);
 }
 
+TEST_CASE("a fast motor loses the share of its steps that the law says, both ways") {
+    // 1 / (1 + exp((865 - v) / 95)) of the steps, in groups of four: of 8000 that scatters by 1.3 %.
+    const Values loss{{"robot.step_loss_speed", 865}, {"robot.step_loss_width", 95}};
+    const double speed = GENERATE(700.0, 865.0, 950.0, -900.0);
+    const double share = 1 / (1 + std::exp((865 - std::abs(speed)) / 95));
+    CHECK(share_lost(loss, {{speed, speed, 10}}) == Approx(share).margin(0.04));
+    CHECK(share_lost(loss, {{300, 300, 5}}) < 0.02);
+}
+
+TEST_CASE("a motor that loses steps stands meanwhile and is not thrown back") {
+    Parameters parameters;
+    parameters.robot.step_loss_speed = 900;
+    parameters.robot.step_loss_width = 50;
+    WheelDrive wheel(parameters.robot, RandomStream(3, "losses"));
+    double last = 0.0;
+    for (int k = 1; k <= 4000; ++k) {
+        const double now = 1.0 + k / 900.0;
+        wheel.step_to(k, now);
+        const double next = wheel.angle(now + 0.5 / 900);
+        CHECK(next >= last - 1e-12);
+        last = next;
+    }
+    CHECK(wheel.lost() == Approx(2000).margin(4 * 4 * std::sqrt(4000 / 8.0)));  // four standard deviations
+}
+
 TEST_CASE("steps slower than the dead band leave the wheel, faster ones turn it") {
     const Values band{{"robot.deadband", 60}};
     const double slow = GENERATE(10.0, 40.0, 59.0);

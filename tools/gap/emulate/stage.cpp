@@ -19,7 +19,6 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kStart = 0.2;  // s: the firmware is ready after 14 ms
 constexpr const char* kEvery = "10 ms";
 
 /// A path as a TOML text.
@@ -58,7 +57,7 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     if (act.ground)
         text += fmt::format(", \"--i2c\", \"/dev/i2c-3\", \"--ground-every\", \"{}\"", act.ground_every);
     if (act.relative) text += ", \"--relative\"";
-    text += fmt::format("]\nstart = \"{} s\"\n", kStart);
+    text += fmt::format("]\nstart = \"{} s\"\n", Row::kSincePower);  // the firmware is ready after 14 ms
     const auto late = [&](const char* key, double seconds) {
         if (seconds != 0) text += fmt::format("{} = \"{} s\"\n", key, seconds);
     };
