@@ -43,8 +43,12 @@ TEST_CASE("a start makes some steps too few, forwards and backwards, and nothing
     CHECK(loss({0, 300, 300, 0, 0}) == Approx(1.1));
     CHECK(loss({0, -300, -300, 0, 0}) == Approx(-1.1));
     CHECK(loss({0, 300, 0, 300, 0, 0}) == Approx(2.2));
-    // Another speed and a reversal are no starts; nor is a record that begins in the middle of a drive.
-    CHECK(loss({0, 300, 450, -450, 0, 0}) == Approx(1.1));
+    // Another speed is no start, nor is a record that begins in the middle of a drive.
+    CHECK(loss({0, 300, 450, 450, 0, 0}) == Approx(1.1));
+    // The other way round the rotor first makes the step that it is behind, then waits for the first one
+    // back.
+    CHECK(loss({0, 450, -450, -450, 0, 0}) == Approx(0).margin(1e-9));
+    CHECK(loss({0, 450, -450, 450, 450, 0, 0}) == Approx(1.1));
     CHECK(loss({300, 300, 300, 0, 0}) == Approx(0.0).margin(1e-12));
     // Slow steps take several rows to be lost; what is not lost before the stop is not lost later.
     CHECK(loss({0, 5, 5, 5, 5, 0, 0}) == Approx(1.1));

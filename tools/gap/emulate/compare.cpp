@@ -111,10 +111,10 @@ void compare_timing(const Run& run, const React& react, const std::vector<Row>& 
 /// What a standing robot's sensor read about the time `t` since power came, or nearest to it.
 std::vector<double> standing(const std::vector<Row>& emulated, double t,
                              const std::function<double(const Row&)>& value) {
-    const double about = std::clamp(std::isnan(t) ? 0.0 : t, kSettled, emulated.back().powered());
+    const double about = std::clamp(std::isnan(t) ? 0.0 : t, kSettled, emulated.back().powered);
     std::vector<double> values;
     for (const Row& row : emulated)
-        if (row.t >= kSettled && std::abs(row.powered() - about) <= kAround && row.ok &&
+        if (row.t >= kSettled && std::abs(row.powered - about) <= kAround && row.ok &&
             !std::isnan(value(row)))
             values.push_back(value(row));
     return values;

@@ -143,7 +143,7 @@ WrittenRun microphone_run(const std::vector<Row>& rows) {
             const double dy = -(r.y + s * drawn.x[i] + c * drawn.y[i]);
             const double off =
                 std::remainder(std::atan2(dy, dx) - r.theta - drawn.direction[i], 2 * std::numbers::pi);
-            run.column("t_s", "s").values.push_back(r.powered());
+            run.column("t_s", "s").values.push_back(r.powered);
             run.column("mic").values.push_back(static_cast<double>(i));
             run.column("distance_m", "m").values.push_back(rounded(std::hypot(dx, dy), kPlaceQuantum));
             run.column("angle_rad", "rad").values.push_back(rounded(off, kAngleQuantum));
@@ -200,7 +200,7 @@ WrittenRun accelerometer_run(const std::vector<Row>& rows, const Act& act) {
         const double gx = std::sin(act.slope_x), gy = std::sin(act.slope_y);
         const double pitch = std::asin(c * gx + s * gy);
         const double roll = std::asin((c * gy - s * gx) / std::cos(pitch));
-        run.column("t_s", "s").values.push_back(r.powered());
+        run.column("t_s", "s").values.push_back(r.powered);
         run.column("pitch_rad", "rad").values.push_back(rounded(pitch, kAngleQuantum));
         run.column("roll_rad", "rad").values.push_back(rounded(roll, kAngleQuantum));
         run.column("motor_speed", "steps/s").values.push_back(motor_speed(r));

@@ -73,7 +73,7 @@ WrittenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStr
             const double gap = (kWallFace - x) / std::cos(way) + kJigNoise * noise.normal();
             if (gap > kFurthest) continue;
             const auto others = [&](std::size_t sensor) { return r.ps[sensor % physics::kProximitySensors]; };
-            run.column("t_s", "s").values.push_back(r.powered());
+            run.column("t_s", "s").values.push_back(r.powered);
             run.column("sensor").values.push_back(static_cast<double>(i));
             run.column("distance_m", "mm").values.push_back(gap * 1e3);
             run.column("angle_rad", "deg").values.push_back(-way / kDegree);
@@ -103,7 +103,7 @@ WrittenRun stripes_run(const std::vector<Row>& rows) {
             const double x =
                 r.x + std::cos(r.theta) * nominal.ground.x - std::sin(r.theta) * nominal.ground.y[i];
             if (std::isnan(r.gs[i]) || near_edge(x, kClearOfEdge)) continue;
-            run.column("t_s", "s").values.push_back(r.powered());
+            run.column("t_s", "s").values.push_back(r.powered);
             run.column("sensor").values.push_back(static_cast<double>(i));
             run.column("grey").values.push_back(stripe_grey(x));
             run.column("reading", "counts").values.push_back(r.gs[i]);
@@ -130,7 +130,7 @@ WrittenRun waves_run(const std::vector<Row>& rows) {
         for (std::size_t i = 0; i < physics::kGroundSensors; ++i) {
             if (std::isnan(r.gs[i])) continue;
             const double x = r.x + c * nominal.ground.x - s * nominal.ground.y[i];
-            run.column("t_s", "s").values.push_back(r.powered());
+            run.column("t_s", "s").values.push_back(r.powered);
             run.column("sensor").values.push_back(static_cast<double>(i));
             run.column("grey").values.push_back(wave_grey(x));
             run.column("reading", "counts").values.push_back(r.gs[i]);

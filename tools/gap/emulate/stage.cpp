@@ -19,6 +19,7 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
+constexpr double kStart = 0.2;  // s: the firmware is ready after 14 ms
 constexpr const char* kEvery = "10 ms";
 
 /// A path as a TOML text.
@@ -57,7 +58,7 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     if (act.ground)
         text += fmt::format(", \"--i2c\", \"/dev/i2c-3\", \"--ground-every\", \"{}\"", act.ground_every);
     if (act.relative) text += ", \"--relative\"";
-    text += fmt::format("]\nstart = \"{} s\"\n", Row::kSincePower);  // the firmware is ready after 14 ms
+    text += fmt::format("]\nstart = \"{} s\"\n", kStart);
     const auto late = [&](const char* key, double seconds) {
         if (seconds != 0) text += fmt::format("{} = \"{} s\"\n", key, seconds);
     };
@@ -173,8 +174,8 @@ std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools,
             shift = std::floor(begun / 60.0) * 60.0;  // the board's clock stood at 60 s when power came
         }
         const Pose pose = seen_at(path, c[0] - shift, robot.tracker_exposure);
-        Row row{c[0] - begun, c[3] - begun, c[1], c[2], pose.x, pose.y, pose.theta,
-                c[4] == 1.0,  {},           {},   {},   {},     {}};
+        Row row{c[0] - begun, c[3] - begun, c[0] - shift, c[1], c[2], pose.x, pose.y,
+                pose.theta,   c[4] == 1.0,  {},           {},   {},   {},     {}};
         std::copy_n(c.begin() + 6, 8, row.ps);
         std::copy_n(c.begin() + 14, 8, row.amb);
         std::copy_n(c.begin() + 22, 3, row.gs);

@@ -52,13 +52,8 @@ struct Act {
 
 /// One exchange between Linux board and main board, and where the tracker saw the robot when it was begun.
 struct Row {
-    /// s from power to the first row.
-    static constexpr double kSincePower = 0.2;
-
-    /// s since power came, from which on what warms up does.
-    double powered() const { return t + kSincePower; }
-
     double t, answered;  ///< s since the Linux board's program began; NaN if not answered
+    double powered;      ///< s since power came, from which on what warms up does
     double left, right;  ///< steps/s commanded
     double x, y, theta;  ///< true pose
     bool ok;
