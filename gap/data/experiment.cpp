@@ -7,6 +7,7 @@
 #include "gap/data/csv.h"
 #include "gap/data/problems.h"
 #include "gap/sync/frames.h"
+#include "gap/sync/pauses.h"
 #include "gap/validate/check.h"
 #include "scenarios/reader.h"
 
@@ -354,6 +355,7 @@ Experiment read_experiment(const std::filesystem::path& folder) {
     Experiment experiment = read_folder(folder, nullptr);
     check(experiment);
     align_times(experiment);
+    find_pauses(experiment);
     return experiment;
 }
 

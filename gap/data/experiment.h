@@ -31,6 +31,8 @@ struct Run {
     /// s: where each row's tracker time stands on the counters' clock; empty: the two are one
     /// (gap/sync/clocks).
     std::vector<double> counted_at;
+    /// Rows at which a control loop that had paused began to count its periods anew (gap/sync/pauses).
+    std::vector<std::size_t> begun_anew;
 
     /// The column, or an empty vector if this run does not have it.
     const std::vector<double>& column(std::string_view name) const;

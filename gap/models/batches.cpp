@@ -106,17 +106,6 @@ double place_by_waits(const Observable& o, std::size_t from, std::size_t to, dou
            deliver(o, half, to, batch, late_jump + *middle, *middle, arrival, mean, extra);
 }
 
-/// Rows of one run, at most `longest` together, as [from, to).
-std::vector<std::pair<std::size_t, std::size_t>> stretches_of(const Observable& o, std::size_t longest) {
-    std::vector<std::pair<std::size_t, std::size_t>> all;
-    for (std::size_t from = 0, to = 0; from < o.y.size(); from = to) {
-        while (to < o.y.size() && to - from < longest && o.run[to] == o.run[from])
-            ++to;
-        all.emplace_back(from, to);
-    }
-    return all;
-}
-
 /// The batch near by that the waits of stretches of `rows` beat with most, looked for in steps by which their
 /// longest turns by one of `parts` of a turn. `reach` and `step` are shares of the batch.
 double best_near(const Observable& o, std::size_t rows, const std::vector<double>& ready,
@@ -152,6 +141,17 @@ double refined_by_waits(const Observable& o, const std::vector<double>& ready,
 }
 
 }  // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> stretches_of(const Observable& o, std::size_t longest) {
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (std::size_t from = 0, to = 0; from < o.y.size(); from = to) {
+        do
+            ++to;
+        while (to < o.y.size() && to - from < longest && o.starts[to] == 0);
+        all.emplace_back(from, to);
+    }
+    return all;
+}
 
 bool is_fine_batch(double batch) {
     return batch < kFineBatch * kClockDoubt;

@@ -5,19 +5,24 @@
 #include "gap/models/model.h"
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap {
+
+/// The rows of each chain, at most `longest` together, as [from, to).
+std::vector<std::pair<std::size_t, std::size_t>> stretches_of(const Observable& arrivals,
+                                                              std::size_t longest);
 
 /// Shorter than ten times the doubt of when a frame was ready (3 ms): an arrival cannot say which batch it is
 /// of, but how long frames waited, as a function of when they were ready, is a saw of the batch.
 bool is_fine_batch(double batch);
 
-/// Rows [from, to) of `arrivals`, one run. `ready`: when each would come by itself, up to a zero of the run's
-/// own. Sets their `mean` and, of a fine batch, `extra`: the sd of those that may catch either of two batches
-/// (s, as all times here). The run's grid is placed where arrivals themselves lie; of a fine batch each half
-/// of the run is placed by the other, for a saw so fine follows any slow error of the rows that it was placed
-/// by. Returns the sum of the distances from `mean`.
+/// Rows [from, to) of `arrivals`, one chain. `ready`: when each would come by itself, up to a zero of the
+/// run's own. Sets their `mean` and, of a fine batch, `extra`: the sd of those that may catch either of two
+/// batches (s, as all times here). The run's grid is placed where arrivals themselves lie; of a fine batch
+/// each half of the run is placed by the other, for a saw so fine follows any slow error of the rows that it
+/// was placed by. Returns the sum of the distances from `mean`.
 double place_batches(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
                      const std::vector<double>& ready, std::vector<double>& mean, std::vector<double>& extra);
 

@@ -2,7 +2,7 @@
 // periods, the host's clock with the robot's and the time on the wire, and whether frames were whole.
 //
 // Deviations: 1. the wire takes ten bit times a byte; gaps between bytes are the firmware's. 2. The clocks'
-// zero is free in each run.
+// zero is free in each run, and after each pause of the loop.
 
 #include "gap/clean/quantum.h"
 #include "gap/models/batches.h"
@@ -58,7 +58,7 @@ class TimingModel final : public ModelOf<Numbers> {
             Observable& period = observables_.back();
             period.name = "robot_clock";
             period.y = robot_;
-            set_up(period);
+            set_up(period, experiment);
             period.instrument.quantum = std::max(rounding_of(robot_), kTick);
             if (keeps_to_periods(period)) take_periods(period);
         } else {
@@ -68,7 +68,7 @@ class TimingModel final : public ModelOf<Numbers> {
         observables_.back().name = "arrival";
         // Against the robot's clock each arrival errs by itself; without one the periods' errors add up.
         observables_.back().noise = clocks_ ? NoiseKind::Carry : NoiseKind::Level;
-        set_up(observables_.back());
+        set_up(observables_.back(), experiment);
         // Against a rounded clock an arrival is as good as both clocks are.
         double& quantum = observables_.back().instrument.quantum;
         if (quantum > kCoarse * usual_step(host.y)) quantum = 0.0;
@@ -195,12 +195,16 @@ class TimingModel final : public ModelOf<Numbers> {
         return power + std::abs(sum);
     }
 
-    static void set_up(Observable& one) {
+    static void set_up(Observable& one, const Experiment& experiment) {
         one.unit = "s";
         one.time.clear();
         one.instrument = {NAN, NAN, one.instrument.quantum};
-        for (std::size_t i = 1; i < one.y.size(); ++i)
-            one.starts[i] = one.run[i] != one.run[i - 1] ? 1 : 0;
+        for (std::size_t i = 1; i < one.y.size(); ++i) {
+            const auto& anew = experiment.runs[one.run[i]].begun_anew;
+            const bool begins = one.run[i] != one.run[i - 1] ||
+                                std::binary_search(anew.begin(), anew.end(), std::size_t{one.row[i]});
+            one.starts[i] = begins ? 1 : 0;
+        }
     }
 
     void gather_counts(const Experiment& experiment, const Observable& host) {
@@ -300,11 +304,9 @@ class TimingModel final : public ModelOf<Numbers> {
                 robot_[i] * (1 + drift) + longer * count_[i] + wire_[i] * slower + stretch * reads_[i];
         p.mean.resize(o.y.size());
         p.extra.assign(batch >= shortest_ && is_fine_batch(batch) ? o.y.size() : 0, 0.0);
-        for (std::size_t i = 0, end = 0; i < o.y.size(); i = end) {
-            while (end < o.y.size() && o.run[end] == o.run[i])
-                ++end;
+        for (const auto& [i, end] : stretches_of(o, o.y.size())) {
             if (batch < shortest_) {
-                // The run's own zero: the middle half of what is left, so that no single row decides.
+                // The stretch's own zero: the middle half of what is left, so that no single row decides.
                 std::vector<double> left;
                 for (std::size_t k = i; k < end; ++k)
                     left.push_back(o.y[k] - arrival[k]);

@@ -1,5 +1,6 @@
 // The forward model of timing against frames made by other formulas.
 
+#include "gap/sync/pauses.h"
 #include "tests/gap/models/exact_tables.h"
 #include "tests/gap/models/made_table.h"
 
@@ -74,6 +75,44 @@ TEST_CASE("each row knows how many its chain lacks before it") {
           Steps{1, 1, 3, 1'000'000});
     // In the table, and without a time.
     CHECK(steps_of({{"t_host_s", {0.0, kNone, 0.2, 0.3}}}) == Steps{1, 2, 1});
+}
+
+TEST_CASE("a loop that paused after broken frames counts its periods anew") {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const auto paused = [](double pause, bool broken) {
+        tests::Table columns;
+        for (int k = 0; k < 40; ++k) {
+            columns["seq"].push_back(k);
+            columns["nominal_period"].push_back(0.1);
+            const bool missing = broken && (k == 18 || k == 19);
+            columns["t_host_s"].push_back(missing ? kNone : 0.1 * k + (k < 20 ? 0.0 : pause));
+            columns["frame_ok"].push_back(missing ? 0 : 1);
+        }
+        auto experiment = tests::experiment_of(Kind::Timing, columns);
+        find_pauses(experiment);
+        return experiment;
+    };
+    const auto worst = [](const Experiment& experiment) {
+        const auto model = make_model(experiment);
+        Prediction prediction;
+        model->predict(model->neutral(), prediction);
+        double most = 0.0;
+        for (std::size_t i = 0; i < prediction[0].mean.size(); ++i)
+            most = std::max(most, std::abs(model->observables()[0].y[i] - prediction[0].mean[i]));
+        return most;
+    };
+    const auto found = paused(0.67, true);
+    CHECK(found.runs[0].begun_anew == std::vector<std::size_t>{20});
+    REQUIRE(found.cautions.size() == 1);
+    CHECK_THAT(found.cautions[0], Catch::Contains("(1 times in 1 of 1 runs, for 0.67 to 0.67 s)"));
+    CHECK(worst(found) < 1e-9);
+    // Late frames, or a pause that no broken frame comes before, are for the causes to explain.
+    for (const auto& [pause, broken] : {std::pair{0.04, true}, std::pair{0.67, false}}) {
+        const auto left = paused(pause, broken);
+        CHECK(left.runs[0].begun_anew.empty());
+        CHECK(left.cautions.empty());
+        CHECK(worst(left) > pause / 3);
+    }
 }
 
 TEST_CASE("a frame after a broken one is broken more often, or less") {

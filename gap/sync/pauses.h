@@ -1,0 +1,13 @@
+#pragma once
+// A control loop that has lost its robot's answers gives up, and begins anew some time later. Its frames then
+// count their periods from there: what came between is the program's doing, and no other frame shows it.
+
+#include "gap/data/experiment.h"
+
+namespace puckloop::gap {
+
+/// Of timing without the robot's own clock: sets Run::begun_anew to the rows that come later than the frames
+/// broken or missing before them account for, by half a period or more, and says so as a caution.
+void find_pauses(Experiment& experiment);
+
+}  // namespace puckloop::gap
