@@ -15,6 +15,7 @@ namespace puckloop::gap::emulate {
 namespace {
 
 constexpr int kPairs = 24;         // of boards: no two runs have the same
+constexpr int kRatePairs = 6;      // at each rate: what two runs show alone is not learnt from the others
 constexpr double kFrame = 0.0045;  // s on the air
 constexpr double kTurn = 0.024;    // s of the stage between two poses
 
@@ -41,9 +42,9 @@ const std::vector<Part>& parts() {
          kPairs,
          2},
         {"single emitters", {0.02, 0.05, 0.10, 0.15, 0.20}, 4, 2, kTurn, true, 0, kPairs, 1},
-        {"41 messages a second", {0.15}, 72, 40, kTurn, false, 32, 2, 1},
-        {"25 messages a second", {0.15}, 72, 40, 0.040, false, 32, 2, 0},
-        {"10 messages a second", {0.15}, 72, 40, 0.100, false, 32, 2, 0},
+        {"41 messages a second", {0.15}, 72, 40, kTurn, false, 32, kRatePairs, 1},
+        {"25 messages a second", {0.15}, 240, 40, 0.040, false, 200, kRatePairs, 0},
+        {"10 messages a second", {0.15}, 72, 40, 0.100, false, 32, kRatePairs, 0},
     };
     return all;
 }
