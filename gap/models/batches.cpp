@@ -38,29 +38,18 @@ double nearest(double time, double batch, double phase) {
     return phase + batch * std::round((time - phase) / batch);
 }
 
-/// What frames wait at least, beyond the time that they were ready by.
-double early(const Observable& o, std::size_t from, std::size_t to, double batch, double phase,
-             const std::vector<double>& arrival) {
-    std::vector<double> waits;
-    for (std::size_t k = from; k < to; ++k)
-        waits.push_back(nearest(o.y[k], batch, phase) - arrival[k]);
-    const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / kShareEarly);
-    std::nth_element(waits.begin(), least, waits.end());
-    return *least - batch / static_cast<double>(kShareEarly);  // waits are even
-}
-
 /// Delivered at whole multiples of the batch: each frame waits for the next one. A frame that is ready
 /// just as a batch leaves may catch it or not: there the arrival itself says which, unless batches are so
 /// short that it would say so of most. Of these the mean of both is expected, and how far they lie apart
 /// (`extra`, where asked for). Returns the sum of the distances.
-double deliver(const Observable& o, std::size_t from, std::size_t to, double batch, double phase,
-               double shortest, const std::vector<double>& arrival, std::vector<double>& mean,
-               std::vector<double>& extra) {
+double deliver(const Observable& o, std::size_t from, std::size_t to, const BatchGrid& grid,
+               const std::vector<double>& arrival, std::vector<double>& mean, std::vector<double>& extra) {
+    const double batch = grid.batch, phase = grid.phase;
     const bool fine = is_fine_batch(batch);
     const double doubt = std::max(kEdge * batch, kClockDoubt);
     double off = 0.0;
     for (std::size_t k = from; k < to; ++k) {
-        const double ready = (arrival[k] + shortest - phase) / batch;
+        const double ready = (arrival[k] + grid.least - phase) / batch;
         if (fine) {
             const double slot = std::ceil(ready), since = ready - (slot - 1);
             const double edge = std::min(since, 1 - since) * batch;
@@ -102,8 +91,8 @@ double place_by_waits(const Observable& o, std::size_t from, std::size_t to, dou
     }
     const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
     std::nth_element(rest.begin(), middle, rest.end());
-    return deliver(o, from, half, batch, early_jump + *middle, *middle, arrival, mean, extra) +
-           deliver(o, half, to, batch, late_jump + *middle, *middle, arrival, mean, extra);
+    return deliver(o, from, half, {batch, early_jump + *middle, *middle, *middle}, arrival, mean, extra) +
+           deliver(o, half, to, {batch, late_jump + *middle, *middle, *middle}, arrival, mean, extra);
 }
 
 /// The batch near by that the waits of stretches of `rows` beat with most, looked for in steps by which their
@@ -157,16 +146,32 @@ bool is_fine_batch(double batch) {
     return batch < kFineBatch * kClockDoubt;
 }
 
-double place_batches(const Observable& o, std::size_t from, std::size_t to, double batch,
-                     const std::vector<double>& arrival, std::vector<double>& mean,
-                     std::vector<double>& extra) {
-    if (is_fine_batch(batch)) return place_by_waits(o, from, to, batch, arrival, mean, extra);
+double BatchGrid::wait(double ready) const {
+    const double slots = (ready + first - phase) / batch;
+    return (std::ceil(slots) - slots) * batch;
+}
+
+BatchGrid grid_of(const Observable& o, std::size_t from, std::size_t to, double batch,
+                  const std::vector<double>& ready) {
     std::complex<double> beat;
     for (std::size_t k = from; k < to; ++k)
         beat += std::polar(1.0, kTurn * o.y[k] / batch);
     const double phase = std::arg(beat) / kTurn * batch;
-    return deliver(o, from, to, batch, phase, early(o, from, to, batch, phase, arrival), arrival, mean,
-                   extra);
+    std::vector<double> waits;
+    for (std::size_t k = from; k < to; ++k)
+        waits.push_back(nearest(o.y[k], batch, phase) - ready[k]);
+    const auto early = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / kShareEarly);
+    std::nth_element(waits.begin(), early, waits.end());
+    // Waits are even: so much less than one seen is possible.
+    return {batch, phase, *early - batch / static_cast<double>(kShareEarly),
+            *std::min_element(waits.begin(), early + 1) - batch / static_cast<double>(2 * (to - from))};
+}
+
+double place_batches(const Observable& o, std::size_t from, std::size_t to, double batch,
+                     const std::vector<double>& arrival, std::vector<double>& mean,
+                     std::vector<double>& extra) {
+    if (is_fine_batch(batch)) return place_by_waits(o, from, to, batch, arrival, mean, extra);
+    return deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, mean, extra);
 }
 
 std::vector<double> beats_of_waits(const Observable& o, const std::vector<double>& ready, double shortest,

@@ -18,6 +18,18 @@ std::vector<std::pair<std::size_t, std::size_t>> stretches_of(const Observable& 
 /// of, but how long frames waited, as a function of when they were ready, is a saw of the batch.
 bool is_fine_batch(double batch);
 
+/// Where a chain's batches leave, s, and what its frames wait at least beyond the time that they are ready
+/// by: `least` by the first thirtieth of them, `first` by the very first.
+struct BatchGrid {
+    double batch, phase, least, first;
+    /// What a frame waits for its batch, whether it was received then or not.
+    double wait(double ready) const;
+};
+
+/// Of rows [from, to) of `arrivals`, one chain, and a batch that is not fine.
+BatchGrid grid_of(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
+                  const std::vector<double>& ready);
+
 /// Rows [from, to) of `arrivals`, one chain. `ready`: when each would come by itself, up to a zero of the
 /// run's own. Sets their `mean` and, of a fine batch, `extra`: the sd of those that may catch either of two
 /// batches (s, as all times here). The run's grid is placed where arrivals themselves lie; of a fine batch

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 namespace puckloop::gap {
 
@@ -32,11 +33,13 @@ constexpr std::size_t kTried = 3;         // peaks
 constexpr double kShortestBatch = 0.001;  // s
 constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
 constexpr double kWhole = 0.999;
-constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
+constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
+constexpr double kLeastFading = 1e-9;              // of what is known of a frame, to the next
 
 struct Numbers {
     double extra_period = 0.0, period_jitter = 0.0, clock_drift = 0.0, i2c_stretch = 0.0, batch = 0.0,
-           edge_errors = 0.0, overrun = 0.0, truncation = 0.0, truncation_burst = 0.0, baud_error = 0.0;
+           edge_errors = 0.0, overrun = 0.0, truncation = 0.0, truncation_burst = 0.0, baud_error = 0.0,
+           answer_limit = 0.0;
 };
 
 class TimingModel final : public ModelOf<Numbers> {
@@ -97,6 +100,7 @@ class TimingModel final : public ModelOf<Numbers> {
     /// The longest batch that intervals between arrivals keep to, and those of frames that are ready do not;
     /// then by the clock itself.
     std::vector<double> starts(std::string_view parameter) const override {
+        if (parameter == "timing.answer_limit") return limits();
         if (parameter != "timing.batch") return {};
         std::vector<double> seen, expected;
         const Observable& o = arrivals();
@@ -133,6 +137,17 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
   private:
+    /// For each start of a batch: so many frames are broken as wait longer.
+    std::vector<double> limits() const {
+        const auto& whole = observables_[static_cast<std::size_t>(ok_)].y;
+        const double kept =
+            std::accumulate(whole.begin(), whole.end(), 0.0) / static_cast<double>(whole.size());
+        std::vector<double> all = starts("timing.batch");
+        for (double& one : all)
+            one *= kept;
+        return all;
+    }
+
     static double usual_step(const std::vector<double>& clock) {
         std::vector<double> steps;
         for (std::size_t i = 1; i < clock.size(); ++i)
@@ -207,16 +222,33 @@ class TimingModel final : public ModelOf<Numbers> {
         }
     }
 
+    /// A frame by its number, and when it was due.
+    struct Frame {
+        double number, due;
+    };
+
+    static Frame frame_at(const Run& run, std::uint32_t row) {
+        const auto &seq = run.column("seq"), &nominal = run.column("nominal_period");
+        const double number = seq.empty() || std::isnan(seq[row]) ? row : seq[row];
+        return {number, number * (nominal.empty() || std::isnan(nominal[row]) ? kPeriod : nominal[row])};
+    }
+
     void gather_counts(const Experiment& experiment, const Observable& host) {
         for (std::size_t i = 0; i < host.y.size(); ++i) {
-            const Run& run = experiment.runs[host.run[i]];
-            const auto &seq = run.column("seq"), &nominal = run.column("nominal_period");
-            const double number =
-                seq.empty() || std::isnan(seq[host.row[i]]) ? host.row[i] : seq[host.row[i]];
-            periods_.push_back(number * (nominal.empty() || std::isnan(nominal[host.row[i]])
-                                             ? kPeriod
-                                             : nominal[host.row[i]]));
-            count_.push_back(number);
+            const Frame frame = frame_at(experiment.runs[host.run[i]], host.row[i]);
+            periods_.push_back(frame.due);
+            count_.push_back(frame.number);
+        }
+    }
+
+    /// All frames, whether they arrived or not, for when each is ready.
+    void gather_frames(const Experiment& experiment, const Rows& rows, const Observable& whole,
+                       const std::vector<std::uint32_t>& used) {
+        std::vector<double> bytes, baud;
+        rows.take(used, {{bytes, "bytes"}, {baud, "baud", kBaud}, {frame_reads_, "i2c_reads"}});
+        for (std::size_t i = 0; i < whole.y.size(); ++i) {
+            frames_.push_back(frame_at(experiment.runs[whole.run[i]], whole.row[i]));
+            frames_.back().due += bytes[i] * kBits / baud[i];
         }
     }
 
@@ -250,6 +282,7 @@ class TimingModel final : public ModelOf<Numbers> {
             const auto shifted = rows.column("shifted", 0);
             observables_.push_back(rows.observable("frame_ok", NoiseKind::Event, used, shifted));
             observables_.back().time.clear();
+            if (!clocks_) gather_frames(experiment, rows, observables_.back(), used);
             edges_ = taken(rows.column("edges", 0), used);
             // Whether bytes shifted is known where the column is there.
             ok_load_ = experiment.has("shifted") ? std::vector<double>(used.size(), 0.0)
@@ -274,6 +307,7 @@ class TimingModel final : public ModelOf<Numbers> {
                  {&Numbers::truncation, "timing.truncation", "1"},
                  {&Numbers::truncation_burst, "timing.truncation_burst", "1"},
                  {&Numbers::baud_error, "timing.baud_error", "1"}});
+        if (!frames_.empty()) declare({{&Numbers::answer_limit, "timing.answer_limit", "s"}});
     }
 
     /// The first row of a run sets the zero.
@@ -324,8 +358,38 @@ class TimingModel final : public ModelOf<Numbers> {
         }
     }
 
+    /// The chance that a frame is not given up because its batch comes too late.
+    std::vector<double> in_time(const Numbers& now) const {
+        const Observable &whole = observables_[static_cast<std::size_t>(ok_)], &o = arrivals();
+        std::vector<double> chance(whole.y.size(), 1.0);
+        if (!(now.answer_limit > 0) || now.batch < shortest_ || is_fine_batch(now.batch)) return chance;
+        const auto ready_by = [&](double due, double number, double reads) {
+            return due + now.extra_period * number + now.i2c_stretch * reads;
+        };
+        std::vector<double> ready;
+        for (std::size_t i = 0; i < o.y.size(); ++i)
+            ready.push_back(ready_by(robot_[i] + wire_[i], count_[i], reads_[i]));
+        std::size_t frame = 0;
+        for (const auto& [from, to] : stretches_of(o, o.y.size())) {
+            const BatchGrid grid = grid_of(o, from, to, now.batch, ready);
+            // Frames before a run's first arrival, and those broken behind its last, are its own as well.
+            const auto before_next = [&](std::size_t i) {
+                return to == o.y.size() || whole.run[i] < o.run[to] ||
+                       (whole.run[i] == o.run[to] && whole.row[i] < o.row[to]);
+            };
+            for (; frame < chance.size() && before_next(frame); ++frame) {
+                const Frame& one = frames_[frame];
+                const double late =
+                    grid.wait(ready_by(one.due, one.number, frame_reads_[frame])) - now.answer_limit;
+                chance[frame] = 1 / (1 + std::exp(late / kEdge));
+            }
+        }
+        return chance;
+    }
+
     void predict_frames(const Numbers& now, Predicted& p) const {
         const Observable& o = observables_[static_cast<std::size_t>(ok_)];
+        const std::vector<double> kept_in_time = in_time(now);
         const double error = std::max(now.edge_errors, 0.0), overrun = now.overrun, cut = now.truncation,
                      stays = now.truncation_burst;
         p.mean.resize(o.y.size());
@@ -340,7 +404,7 @@ class TimingModel final : public ModelOf<Numbers> {
                 broken = std::clamp(usual + std::pow(kept, o.steps[i]) * (last - usual), 0.0, 1.0);
             }
             p.mean[i] = kWhole * std::pow(1 - std::min(error, 0.99), edges_[i]) *
-                        (1 - std::min(overrun * ok_load_[i], 0.99)) * (1 - broken);
+                        (1 - std::min(overrun * ok_load_[i], 0.99)) * (1 - broken) * kept_in_time[i];
         }
     }
 
@@ -355,6 +419,8 @@ class TimingModel final : public ModelOf<Numbers> {
     double shortest_ = kShortestBatch;  // s: what is shorter is no batch but the clocks' rounding
     int ok_ = -1, shift_ = -1;
     std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
+    std::vector<Frame> frames_;  // whole or not; empty where the robot's clock says when each was ready
+    std::vector<double> frame_reads_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 using namespace puckloop::gap;
@@ -113,6 +114,43 @@ TEST_CASE("a loop that paused after broken frames counts its periods anew") {
         CHECK(left.cautions.empty());
         CHECK(worst(left) > pause / 3);
     }
+}
+
+TEST_CASE("a program that gives answers up breaks those frames that wait longest for their batch") {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN(), kBatch = 0.031, kLimit = 0.022;
+    tests::Table columns;
+    for (int k = 0; k < 150; ++k) {
+        const double ready = 0.1 * k + 0.0073, slot = std::ceil(ready / kBatch) * kBatch;
+        const bool late = slot - ready > kLimit;
+        columns["seq"].push_back(k);
+        columns["t_host_s"].push_back(late ? kNone : slot);
+        columns["frame_ok"].push_back(late ? 0 : 1);
+    }
+    const auto experiment = tests::experiment_of(Kind::Timing, columns);
+    const auto model = make_model(experiment);
+    REQUIRE(model->observables()[1].name == "frame_ok");
+    const auto& whole = model->observables()[1].y;
+    const auto wrong = [&](double limit) {
+        Prediction prediction;
+        auto values = model->neutral();
+        values.at(static_cast<std::size_t>(model->find("timing.batch"))) = kBatch;
+        values.at(static_cast<std::size_t>(model->find("timing.answer_limit"))) = limit;
+        model->predict(values, prediction);
+        int count = 0;
+        for (std::size_t i = 0; i < whole.size(); ++i)
+            count += std::abs(whole[i] - prediction[1].mean[i]) > 0.5 ? 1 : 0;
+        return count;
+    };
+    const auto broken = static_cast<int>(std::count(whole.begin(), whole.end(), 0.0));
+    CHECK(broken > 30);
+    CHECK(wrong(0.0) == broken);  // no limit: all whole
+    CHECK(wrong(kLimit) <= 1);
+    CHECK(wrong(0.5 * kLimit) > 20);
+    // A fit begins where as many frames would be broken as are.
+    const auto limits = model->starts("timing.answer_limit"), batches = model->starts("timing.batch");
+    REQUIRE(limits.size() == batches.size());
+    for (std::size_t k = 0; k < limits.size(); ++k)
+        CHECK(limits[k] == Approx(batches[k] * (150 - broken) / 150.0));
 }
 
 TEST_CASE("a frame after a broken one is broken more often, or less") {

@@ -174,7 +174,7 @@ std::vector<Secret> links() {
          {{"uart.cut", 0, 0, 1}, {"uart.cut_again", 1, 0, 1}},
          {"truncation"}},
         one("timing", "bytes handed on in batches", "linux.tty_batch", 0, 1,
-            {0.012, 0.006, 0.04, false, "5..50 ms"}, {"batching"}),
+            {0.012, 0.006, 0.04, false, "5..50 ms"}, {"batching", "late_answers"}),
         one("timing", "the I2C bus is held", "linux.i2c_hold", 0, 1, {0.0015, 0.001, 0.005, false, "1..5 ms"},
             {"i2c_stretch"}),
         nothing("rab"),

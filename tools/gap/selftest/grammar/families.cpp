@@ -32,7 +32,8 @@ constexpr std::string_view kStrength[] = {"rab_lobe", "far_floor", "strength_sat
 constexpr std::string_view kBearing[] = {"bearing_offset"};
 constexpr std::string_view kLoss[] = {"collision_loss", "random_loss",  "poll_loss", "beat_loss",
                                       "baud_mismatch",  "fifo_overrun", "truncation"};
-constexpr std::string_view kPeriod[] = {"i2c_stretch", "long_period", "clock_drift", "batching"};
+constexpr std::string_view kPeriod[] = {"i2c_stretch", "long_period", "clock_drift", "batching",
+                                        "late_answers"};
 
 struct Family {
     std::string_view name;
