@@ -57,6 +57,8 @@ Rerun performed_again(const Experiment& measured, const Verdict& verdict, const 
     return rerun(measured, verdict, how);
 }
 
+constexpr std::uint64_t kSeeds = 1'000'000'000;
+
 /// Errors with the overlay are no more than this over those of the true robot, whose chance may be more.
 constexpr double kAboveFloor = 1.25;
 
@@ -116,6 +118,8 @@ SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOption
     try {
         RecordOptions options = given;
         RandomStream random(given.seed, fmt::format("fidelity {}", number));
+        // Drives, laboratory and noise of its own: one chance of a seed is not to count in every case.
+        options.seed = random.below(kSeeds);
         auto assignments =
             closed_loop ? closed_assignments(secret) : drawn_assignments(secret, number, given.seed);
         if (!closed_loop)
