@@ -67,9 +67,18 @@ std::string reason_of(const std::exception& error) {
     if (text.starts_with("[error] ")) text.erase(0, 8);
     if (text.starts_with("toml::")) text.erase(0, 6);
     // "parse_key_value_pair: missing ...": the parser's function is of no use to the reader.
-    if (const auto colon = text.find(": "); text.starts_with("parse_") && colon != std::string::npos)
-        text.erase(0, colon + 2);
+    for (const char* function : {"parse_", "insert_"})
+        if (const auto colon = text.find(": "); text.starts_with(function) && colon != std::string::npos)
+            text.erase(0, colon + 2);
     return text;
+}
+
+/// What to write in the place of what the parser refuses for this reason.
+const char* remedy_for(const std::string& reason) {
+    for (const char* twice : {"already exists", "cannot be defined", "collides with", "is neither table nor"})
+        if (reason.find(twice) != std::string::npos)
+            return "each key and each table once; [[...]] for every table of a list";
+    return "valid TOML: key = value, texts in quotes, numbers with a decimal point";
 }
 
 /// Deeper than this the parser would run out of stack.
@@ -125,8 +134,9 @@ TomlValue read_toml(const std::filesystem::path& file) {
         return convert(toml::parse<toml::discard_comments, std::map, std::vector>(content, file.string()),
                        file.string());
     } catch (const toml::exception& error) {
-        throw InputError(file.string(), fmt::format("line {}", error.location().line()), reason_of(error),
-                         "valid TOML: key = value, texts in quotes, numbers with a decimal point");
+        const std::string reason = reason_of(error);
+        throw InputError(file.string(), fmt::format("line {}", error.location().line()), reason,
+                         remedy_for(reason));
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {

@@ -1,5 +1,7 @@
 #include "gap/data/columns.h"
 
+#include "base/enum_names.h"
+#include "base/error.h"
 #include "base/suggest.h"
 
 #include <fmt/format.h>
@@ -9,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <stdexcept>
 
 namespace puckloop::gap {
 
@@ -123,24 +124,24 @@ const std::vector<ColumnInfo> kTiming{
 
 struct UnitInfo {
     const char* name;
-    double factor, offset = 0.0;
+    ToSi to_si;
 };
 constexpr double kDegree = std::numbers::pi / 180;
 /// Units by the SI unit that they are turned into.
 const std::map<std::string_view, std::vector<UnitInfo>> kUnits{
-    {"m", {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}, {"km", 1000}}},
-    {"rad", {{"rad", 1}, {"deg", kDegree}, {"turn", 2 * std::numbers::pi}}},
-    {"s", {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"min", 60}, {"h", 3600}}},
-    {"V", {{"V", 1}, {"mV", 1e-3}}},
-    {"degC", {{"degC", 1}, {"K", 1, -273.15}, {"degF", 5.0 / 9, -32 * 5.0 / 9}}},
-    {"Hz", {{"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"1/s", 1}}},
-    {"m/s", {{"m/s", 1}, {"cm/s", 0.01}, {"mm/s", 1e-3}}},
-    {"steps/s", {{"steps/s", 1}}},
-    {"m/s2", {{"m/s2", 1}, {"g", 9.80665}, {"mm/s2", 1e-3}}},
-    {"kg", {{"kg", 1}, {"gram", 1e-3}}},
-    {"1/m", {{"1/m", 1}, {"1/mm", 1e3}, {"1/cm", 100}}},
-    {"counts", {{"counts", 1}}},
-    {"1", {{"1", 1}, {"%", 0.01}, {"steps", 1}, {"", 1}}},
+    {"m", {{"m", {1}}, {"cm", {0.01}}, {"mm", {0.001}}, {"um", {1e-6}}, {"in", {0.0254}}, {"km", {1000}}}},
+    {"rad", {{"rad", {1}}, {"deg", {kDegree}}, {"turn", {2 * std::numbers::pi}}}},
+    {"s", {{"s", {1}}, {"ms", {1e-3}}, {"us", {1e-6}}, {"ns", {1e-9}}, {"min", {60}}, {"h", {3600}}}},
+    {"V", {{"V", {1}}, {"mV", {1e-3}}}},
+    {"degC", {{"degC", {1}}, {"K", {1, -273.15}}, {"degF", {5.0 / 9, -32 * 5.0 / 9}}}},
+    {"Hz", {{"Hz", {1}}, {"kHz", {1e3}}, {"MHz", {1e6}}, {"1/s", {1}}}},
+    {"m/s", {{"m/s", {1}}, {"cm/s", {0.01}}, {"mm/s", {1e-3}}}},
+    {"steps/s", {{"steps/s", {1}}}},
+    {"m/s2", {{"m/s2", {1}}, {"g", {9.80665}}, {"mm/s2", {1e-3}}}},
+    {"kg", {{"kg", {1}}, {"gram", {1e-3}}}},
+    {"1/m", {{"1/m", {1}}, {"1/mm", {1e3}}, {"1/cm", {100}}}},
+    {"counts", {{"counts", {1}}}},
+    {"1", {{"1", {1}}, {"%", {0.01}}, {"steps", {1}}, {"", {1}}}},
 };
 
 std::vector<ColumnInfo> with_common(std::vector<ColumnInfo> own) {
@@ -169,15 +170,11 @@ const ColumnInfo* find_column(Kind kind, std::string_view name) {
     return nullptr;
 }
 
-bool unit_to_si(std::string_view unit, std::string_view si, double& factor, double& offset) {
+std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si) {
     for (const auto& [to, units] : kUnits)
-        for (const UnitInfo& known : units) {
-            if (unit != known.name || (si != to && !(si == "counts" && to == "1"))) continue;
-            factor = known.factor;
-            offset = known.offset;
-            return true;
-        }
-    return false;
+        for (const UnitInfo& known : units)
+            if (unit == known.name && (si == to || (si == "counts" && to == "1"))) return known.to_si;
+    return std::nullopt;
 }
 
 std::string units_of(std::string_view si) {
@@ -191,11 +188,12 @@ std::string_view kind_name(Kind kind) {
     return kNames[static_cast<std::size_t>(kind)];
 }
 
-Kind kind_named(std::string_view name) {
-    for (std::size_t i = 0; i < kNames.size(); ++i)
-        if (kNames[i] == name) return static_cast<Kind>(i);
-    throw std::invalid_argument(
-        fmt::format("unknown kind \"{}\"{}", name, did_you_mean(name, {kNames.begin(), kNames.end()})));
+Kind kind_named(std::string_view name, std::string_view file, std::string_view place) {
+    if (const auto kind = value_named<Kind>(kNames, name)) return *kind;
+    throw InputError(
+        file, place,
+        fmt::format("unknown kind \"{}\"{}", name, did_you_mean(name, {kNames.begin(), kNames.end()})),
+        kKindNames);
 }
 
 }  // namespace puckloop::gap

@@ -3,6 +3,7 @@
 
 #include "gap/data/experiment.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,9 +31,12 @@ std::span<const ColumnInfo> columns_of(Kind kind);
 /// nullptr if the kind has no such column.
 const ColumnInfo* find_column(Kind kind, std::string_view name);
 
-/// Factor and offset from `unit` to the SI unit `si`: value_si = value * factor + offset. Returns false if
-/// the units do not measure the same thing or one is unknown.
-bool unit_to_si(std::string_view unit, std::string_view si, double& factor, double& offset);
+/// value_si = value * factor + offset
+struct ToSi {
+    double factor = 1.0, offset = 0.0;
+};
+/// From `unit` to the SI unit `si`; nothing if they do not measure the same thing or one is unknown.
+std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si);
 
 /// The names of all units that are turned into `si`: "m, cm, mm, um, in, km".
 std::string units_of(std::string_view si);

@@ -47,6 +47,23 @@ std::string readable(std::string_view text) {
     return out;
 }
 
+/// Could the commas in a column's cells part thousands from hundreds, not fractions?
+struct Commas {
+    bool any = false, thousands = true;
+
+    void take(std::string_view cell) {
+        const auto figures = cell.substr(std::min(cell.find_first_not_of("+-"), cell.size()));
+        const auto comma = figures.find(',');
+        const auto before = figures.substr(0, comma);
+        if (comma == std::string_view::npos)
+            thousands = thousands && before.size() <= 3;
+        else
+            thousands =
+                thousands && figures.size() == comma + 4 && comma >= 1 && comma <= 3 && before.front() != '0';
+        any = any || comma != std::string_view::npos;
+    }
+};
+
 /// How a file writes its fractions: with one or the other throughout.
 enum class Decimal { Unknown, Point, Comma };
 
@@ -68,19 +85,6 @@ bool parse(std::string_view cell, bool comma_separates, Decimal& decimal, double
 }
 
 constexpr const char* kWanted = "a CSV file: a header line, then rows of numbers";
-
-/// Pipes and devices may never end.
-std::ifstream opened(const std::filesystem::path& file) {
-    std::error_code failed;
-    const auto type = std::filesystem::status(file, failed).type();
-    using enum std::filesystem::file_type;
-    if (type == not_found) throw InputError(file.string(), "", "is not there", kWanted);
-    if (type == directory) throw InputError(file.string(), "", "is a folder", kWanted);
-    if (type != regular) throw InputError(file.string(), "", "is not a file", kWanted);
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream.is_open()) throw InputError(file.string(), "", "cannot be opened", kWanted);
-    return stream;
-}
 
 /// What programs write that is not CSV, by its first bytes and by what no text holds.
 void refuse_binary(const std::filesystem::path& file, const std::string& place, std::string_view line) {
@@ -130,15 +134,31 @@ const char* remedy(std::string_view cell) {
 
 }  // namespace
 
+std::ifstream opened(const std::filesystem::path& file, const char* wanted) {
+    using enum std::filesystem::file_type;
+    std::error_code failed;
+    const auto type = std::filesystem::status(file, failed).type();
+    std::ifstream stream;
+    if (type == regular) stream.open(file, std::ios::binary);
+    if (stream.is_open()) return stream;
+    throw InputError(file.string(), "",
+                     type == not_found                 ? "is not there"
+                     : type == directory               ? "is a folder, not a file"
+                     : type == regular || type == none ? "cannot be opened"
+                                                       : "is a pipe or device, which may never end",
+                     wanted);
+}
+
 bool is_binary(std::string_view text) {
     return std::any_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < '\t'; });
 }
 
 CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
-    std::ifstream stream = opened(file);
+    std::ifstream stream = opened(file, kWanted);
     CsvTable table;
     char separator = ',';
     Decimal decimal = Decimal::Unknown;
+    std::vector<Commas> commas;
     for (std::string line; std::getline(stream, line);) {
         const bool first = table.names.empty();
         if (first && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
@@ -152,6 +172,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
                 throw InputError(file.string(), kHeader, "has only blanks between names",
                                  "a comma, semicolon or tab");
             read_header(file, line, separator, table);
+            commas.resize(table.names.size());
             continue;
         }
         auto cells = csv_cells(line, separator);
@@ -166,6 +187,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (!whole) cells.assign(table.names.size(), {});  // the rows behind it keep their numbers
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
+            commas[i].take(cells[i]);
             const bool sound = attempt(problems, [&] {
                 if (!parse(cells[i], separator == ',', decimal, value))
                     throw InputError(file.string(), place,
@@ -182,6 +204,8 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
     if (table.rows() == 0)
         throw InputError(file.string(), "", "has no rows", "at least one below the header");
     table.decimal_commas = decimal == Decimal::Comma;
+    for (std::size_t i = 0; table.decimal_commas && i < commas.size(); ++i)
+        if (commas[i].any && commas[i].thousands) table.like_thousands.push_back(table.names[i]);
     return table;
 }
 

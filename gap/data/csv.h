@@ -2,6 +2,7 @@
 // A CSV file of numbers with one header line: what experiment.toml names.
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +13,14 @@ class Problems;
 
 struct CsvTable {
     std::vector<std::string> names;
-    std::vector<std::vector<double>> columns;  ///< NaN where a cell is empty, "nan" or "NA"
-    bool decimal_commas = false;               ///< "0,5" was read as 0.5
+    std::vector<std::vector<double>> columns;   ///< NaN where a cell is empty, "nan" or "NA"
+    bool decimal_commas = false;                ///< "0,5" was read as 0.5
+    std::vector<std::string> like_thousands{};  ///< columns whose "1,200", read as 1.2, may have been 1200
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
+
+/// InputError, which names what is `wanted`, where there is no file that ends: pipes and devices may not.
+std::ifstream opened(const std::filesystem::path& file, const char* wanted);
 
 /// Holds a control character that no text has.
 bool is_binary(std::string_view text);

@@ -16,9 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <stdexcept>
 
 namespace puckloop::gap {
 
@@ -27,11 +25,13 @@ namespace {
 using scenarios::Dimension;
 using scenarios::Reader;
 
+constexpr const char* kNumber = "a finite number";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Where a canonical column comes from: [columns] x_m = { from = "x", unit = "mm" }.
 struct Origin {
-    std::string from, unit;
+    std::string from;
+    ToSi to_si{};
     int line = 0;
 };
 
@@ -40,16 +40,24 @@ struct Frame {
     std::string file;
     std::map<std::string, Origin, std::less<>> origins;
     std::map<std::string, std::string> conditions;
-    std::map<std::string, double> codes[2];  // of session and unit names, in order of appearance
-    int with_decimal_commas = 0;             // files
+    std::map<std::string, std::map<std::string, double>> codes;  // of session and unit names, as they appear
+    // In how many files:
+    int with_decimal_commas = 0;
+    std::map<std::string, int> like_thousands;  // by column
+    std::map<std::string, int> unused;          // by what is said of a column
 };
 
-double as_number(const Reader& reader, const std::string& key, const TomlValue& value) {
+[[noreturn]] void fail_at(const std::string& file, int line, const std::string& problem,
+                          const std::string& expected = {}) {
+    throw InputError(file, fmt::format("line {}", line), problem, expected);
+}
+
+double as_number(const Reader& reader, const std::string& key, const TomlValue& value,
+                 const char* wanted = kNumber) {
     if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return static_cast<double>(*whole);
     if (const auto* real = std::get_if<double>(&value.data); real != nullptr && std::isfinite(*real))
         return *real;
-    throw InputError(reader.file(), fmt::format("line {}", value.line),
-                     fmt::format("{} is not a number", key), "a finite number");
+    fail_at(reader.file(), value.line, fmt::format("{} is not a number", key), wanted);
 }
 
 /// "proximity.curve" = 1 and [nominal.proximity] curve = 1 alike.
@@ -78,8 +86,8 @@ void read_conditions(Reader& reader, std::map<std::string, std::string>& conditi
     for (const auto& [key, value] : std::get<TomlTable>(table->data)) {
         const std::string text = as_text(value);
         if (text.empty())
-            throw InputError(reader.file(), fmt::format("line {}", value.line),
-                             fmt::format("condition {} is not a text", key), "a text or a number");
+            fail_at(reader.file(), value.line, fmt::format("condition {} is not a text", key),
+                    "a text or a number");
         conditions[key] = text;
     }
 }
@@ -98,21 +106,20 @@ void read_columns(const TomlValue& table, Kind kind, Frame& frame) {
     Reader reader(frame.file, "columns", table);
     for (const auto& [name, value] : reader.everything()) {
         const ColumnInfo& info = known_column(reader, kind, name);
-        Origin origin{name, info.unit, value.line};
+        std::string from = name, unit;
         if (value.is_string()) {
-            origin.unit = std::get<std::string>(value.data);
+            unit = std::get<std::string>(value.data);
         } else {
             Reader entry(frame.file, "column " + name, value);
-            origin.from = entry.text("from", name);
-            origin.unit = entry.text("unit", info.unit);
+            from = entry.text("from", name);
+            unit = entry.text("unit", info.unit);
             entry.finish();
         }
-        double factor = 1.0, offset = 0.0;
-        if (!unit_to_si(origin.unit, info.unit, factor, offset))
-            throw InputError(frame.file, fmt::format("line {}", value.line),
-                             fmt::format("column {} cannot be in \"{}\"", name, origin.unit),
-                             units_of(info.unit));
-        frame.origins[name] = origin;
+        const auto to_si = unit_to_si(unit, info.unit);
+        if (!to_si)
+            fail_at(frame.file, value.line, fmt::format("column {} cannot be in \"{}\"", name, unit),
+                    units_of(info.unit));
+        frame.origins[name] = {from, *to_si, value.line};
     }
 }
 
@@ -138,18 +145,19 @@ void read_constants(Reader& reader, Kind kind, const TomlValue& table, Frame& fr
         (void)reader.has(info.name);  // known, for what is suggested in the place of an unknown key
     for (const auto& [key, value] : std::get<TomlTable>(table.data)) {
         if (find_column(kind, key) == nullptr) continue;
+        const bool named = key == "session" || key == "unit";
         double number = 0.0;
-        if ((key == "session" || key == "unit") && value.is_string()) {
-            auto& codes = frame.codes[key == "session" ? 0 : 1];
-            number = codes.emplace(std::get<std::string>(value.data), static_cast<double>(codes.size() + 1))
-                         .first->second;
-            run.conditions.emplace(key, std::get<std::string>(value.data));
+        if (named && value.is_string()) {
+            const auto& name = std::get<std::string>(value.data);
+            auto& codes = frame.codes[key];
+            number = codes.emplace(name, static_cast<double>(codes.size() + 1)).first->second;
+            run.conditions.emplace(key, name);
         } else {
-            number = as_number(reader, key, value);
+            number = as_number(reader, key, value, named ? "a number, or a name in quotes" : kNumber);
         }
         if (run.columns.contains(key))
-            throw InputError(frame.file, fmt::format("line {}", value.line),
-                             fmt::format("{} is given for the run and as a column of {}", key, run.file));
+            fail_at(frame.file, value.line,
+                    fmt::format("{} is given for the run and as a column of {}", key, run.file));
         run.columns[key].assign(run.rows, number);
     }
 }
@@ -159,6 +167,7 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     Reader reader(frame.file, fmt::format("run {}", index + 1), table);
     Run run;
     run.file = reader.text("file");
+    if (run.file.empty()) reader.fail("file", "file names nothing", "a CSV file of the experiment's folder");
     run.name = reader.text("name", std::filesystem::path(run.file).stem().string());
     run.conditions = frame.conditions;
     read_conditions(reader, run.conditions);
@@ -166,18 +175,18 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     CsvTable csv = read_csv(path, problems);
     run.rows = csv.rows();
     frame.with_decimal_commas += csv.decimal_commas ? 1 : 0;
+    for (const std::string& name : csv.like_thousands)
+        ++frame.like_thousands[name];
     std::map<std::string, std::string> used;  // CSV name: canonical name
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
-        const auto origin = frame.origins.find(info.name);
-        const std::string from = origin == frame.origins.end() ? info.name : origin->second.from;
-        const auto place = std::find(csv.names.begin(), csv.names.end(), from);
+        const auto stated = frame.origins.find(info.name);
+        const auto& [from, to_si, line] = stated == frame.origins.end() ? Origin{info.name} : stated->second;
+        const auto place = std::ranges::find(csv.names, from);
         if (place == csv.names.end()) continue;
-        double factor = 1.0, offset = 0.0;
-        if (origin != frame.origins.end()) unit_to_si(origin->second.unit, info.unit, factor, offset);
         auto& values = run.columns[info.name] =
             csv.columns[static_cast<std::size_t>(place - csv.names.begin())];
         for (double& value : values)
-            value = value * factor + offset;
+            value = value * to_si.factor + to_si.offset;
         if (const auto [other, fresh] = used.emplace(from, info.name); !fresh)
             throw InputError(frame.file, "",
                              fmt::format("{} and {} are both the column \"{}\" of {}", other->second,
@@ -185,7 +194,7 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
                              "a column of its own for each");
     }
     for (const auto& [name, origin] : frame.origins)
-        if (!run.has(name) && std::find(csv.names.begin(), csv.names.end(), origin.from) == csv.names.end() &&
+        if (!run.has(name) && std::ranges::find(csv.names, origin.from) == csv.names.end() &&
             find_column(experiment.kind, name)->required)
             throw InputError(path.string(), "header", fmt::format("has no column \"{}\"", origin.from),
                              fmt::format("it, as {} says", frame.file));
@@ -200,27 +209,11 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     std::vector<std::string_view> absent;
     for (const ColumnInfo& info : columns_of(experiment.kind))
         if (!run.has(info.name)) absent.emplace_back(info.name);
-    for (const std::string& name : csv.names) {
-        if (used.contains(name) || name.empty()) continue;
-        experiment.caution("{}: column \"{}\" is not used{}", run.file, name, did_you_mean(name, absent));
-    }
+    for (const std::string& name : csv.names)
+        if (!used.contains(name) && !name.empty())
+            ++frame.unused[fmt::format("column \"{}\" is not used{}", name, did_you_mean(name, absent))];
     reader.finish();
     return run;
-}
-
-void tidy(std::vector<std::string>& cautions) {
-    std::vector<std::string> once;
-    std::map<std::string, int> unused;  // the same column in many files: one line
-    for (const auto& caution : cautions) {
-        const auto at = caution.find(": column \"");
-        if (at == std::string::npos || caution.find("\" is not used", at) == std::string::npos)
-            once.push_back(caution);
-        else
-            ++unused[caution.substr(at + 2)];
-    }
-    for (const auto& [text, count] : unused)
-        once.push_back(fmt::format("{} ({} file{})", text, count, count == 1 ? "" : "s"));
-    cautions = std::move(once);
 }
 
 }  // namespace
@@ -278,14 +271,8 @@ void read_assumed(Reader& top, Experiment& experiment) {
 /// What is no TOML at all, with what makes one.
 TomlValue read_description(const std::string& file) {
     constexpr const char* kRemedy = "the description that `puckloop gap new KIND DIR` begins, docs/gap.md";
-    std::error_code ignored;
-    using enum std::filesystem::file_type;
-    const auto type = std::filesystem::status(file, ignored).type();
-    if (type == not_found) throw InputError(file, "", "is not there", kRemedy);
-    if (type == directory) throw InputError(file, "", "is a folder, not a file", kRemedy);
-    if (type != regular) throw InputError(file, "", "is a pipe or device, which may never end", kRemedy);
     std::array<char, 4096> start{};
-    const auto read = std::ifstream(file, std::ios::binary).read(start.data(), start.size()).gcount();
+    const auto read = opened(file, kRemedy).read(start.data(), start.size()).gcount();
     if (is_binary({start.data(), static_cast<std::size_t>(read)}))
         throw InputError(file, "", "is binary, not text", kRemedy);
     return read_toml(file);
@@ -304,12 +291,7 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
     Reader top(frame.file, "", root);
     Experiment experiment;
     experiment.folder = folder;
-    const std::string kind = top.text("kind");
-    try {
-        experiment.kind = kind_named(kind);
-    } catch (const std::invalid_argument& error) {
-        top.fail("kind", error.what(), "proximity, motion, rab, microphone, ground, accelerometer or timing");
-    }
+    experiment.kind = kind_named(top.text("kind"), frame.file, fmt::format("line {}", top.line_of("kind")));
     experiment.title = top.text("title", "");
     if (experiment.title.empty())  // "DIR/" has no file name of its own
         experiment.title = std::filesystem::absolute(folder / "experiment.toml")
@@ -337,15 +319,19 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
     for (const auto& [name, origin] : frame.origins)
         attempt(problems, [&] {
             if (whole && !experiment.has(name))
-                throw InputError(
-                    frame.file, fmt::format("line {}", origin.line),
-                    fmt::format("{} is to be the column \"{}\", which no file has", name, origin.from),
-                    "a column of the CSV files");
+                fail_at(frame.file, origin.line,
+                        fmt::format("{} is to be the column \"{}\", which no file has", name, origin.from),
+                        "a column of the CSV files");
         });
-    tidy(experiment.cautions);
+    for (const auto& [text, files] : frame.unused)
+        experiment.caution("{} ({} file{})", text, files, files == 1 ? "" : "s");
     if (frame.with_decimal_commas > 0)
         experiment.caution("commas inside cells are read as decimal commas (0,5 is 0.5) in {} of {} files",
                            frame.with_decimal_commas, runs.size());
+    for (const auto& [name, files] : frame.like_thousands)
+        experiment.caution("column \"{}\" has three digits behind every comma in {} of {} files: read as "
+                           "decimals (1,200 is 1.2), not as thousands",
+                           name, files, runs.size());
     return experiment;
 }
 

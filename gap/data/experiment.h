@@ -83,7 +83,9 @@ Experiment read_experiment(const std::filesystem::path& folder);
 Experiment survey_experiment(const std::filesystem::path& folder, Problems& problems);
 
 std::string_view kind_name(Kind kind);  ///< "proximity", ...
-/// Throws std::invalid_argument with one line and the nearest name.
-Kind kind_named(std::string_view name);
+inline constexpr const char* kKindNames =
+    "proximity, motion, rab, microphone, ground, accelerometer or timing";
+/// InputError at `place` of `file`, with the nearest name.
+Kind kind_named(std::string_view name, std::string_view file, std::string_view place);
 
 }  // namespace puckloop::gap

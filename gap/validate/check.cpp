@@ -213,11 +213,19 @@ void check_runs(Experiment& experiment) {
                            units.size());
 }
 
+/// A file by any of its names: "./run1.csv", a link.
 void check_files(const Experiment& experiment) {
-    std::set<std::string> files;
-    for (const Run& run : experiment.runs)
-        if (!files.insert(run.file).second)
-            refuse(experiment, fmt::format("{} is named by two runs", run.file), "each file once");
+    std::map<std::filesystem::path, std::string> files;
+    std::error_code ignored;
+    for (const Run& run : experiment.runs) {
+        const auto path = std::filesystem::weakly_canonical(experiment.folder / run.file, ignored);
+        const auto [first, fresh] = files.emplace(path, run.file);
+        if (fresh) continue;
+        const std::string names = first->second == run.file
+                                      ? run.file
+                                      : fmt::format("{}, also written {},", first->second, run.file);
+        refuse(experiment, names + " is named by two runs", "each file once");
+    }
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -21,7 +20,6 @@ namespace puckloop::tools {
 namespace {
 
 constexpr std::uint64_t kMostRuns = 1000;
-constexpr const char* kKinds = "proximity, motion, rab, microphone, ground, accelerometer or timing";
 
 struct Fresh {
     std::string kind;
@@ -30,12 +28,7 @@ struct Fresh {
 };
 
 void make_folder(const Fresh& fresh) {
-    gap::Kind kind{};
-    try {
-        kind = gap::kind_named(fresh.kind);
-    } catch (const std::invalid_argument& error) {
-        throw InputError("", "gap new", error.what(), kKinds);
-    }
+    const gap::Kind kind = gap::kind_named(fresh.kind, "", "gap new");
     if (fresh.runs == 0) throw InputError("", "--runs", "is 0", "1 or more");
     gap::write_new_folder(kind, fresh.runs, fresh.folder);
     fmt::print(
@@ -49,7 +42,7 @@ void declare_gap_new(Command& gap, int& status) {
     Command* command =
         gap.add_subcommand("new", "Write a commented experiment.toml and CSV headers, to be filled in");
     auto fresh = std::make_shared<Fresh>();
-    command->add_option("kind", fresh->kind, kKinds)->type_name("KIND")->required();
+    command->add_option("kind", fresh->kind, gap::kKindNames)->type_name("KIND")->required();
     command->add_option("folder", fresh->folder, "a new folder")
         ->type_name("DIR")
         ->check(not_empty())

@@ -83,7 +83,7 @@ TEST_CASE("files that cannot be used are refused with a line") {
     write_file(folder.path() / "experiment.toml", kToml);
     CHECK_THAT(refusal(folder.path()), Contains("a.csv: is not there"));
     std::filesystem::create_directory(folder.path() / "a.csv");
-    CHECK_THAT(refusal(folder.path()), Contains("a.csv: is a folder"));
+    CHECK_THAT(refusal(folder.path()), Contains("a.csv: is a folder, not a file"));
     CHECK_THAT(refusal(folder.path() / "experiment.toml"), Contains("not a folder"));
 }
 
@@ -124,13 +124,35 @@ TEST_CASE("decimal commas between semicolons or tabs are read, where all numbers
     CHECK_THAT(of_csv(german + "6,0;1;0,5;1.300,0\n"), Contains("row 61") && Contains("thousands"));
 }
 
+TEST_CASE("commas that may part thousands are read as decimal commas, with a caution") {
+    // Three digits behind every comma, none of four without it: "331" is then 331 counts, "1,106" 1.106.
+    const auto readings = [](const char* (*cell)(int)) {
+        std::string text = "t_s;sensor;grey;reading\n", cautions;
+        for (int i = 0; i < 60; ++i)
+            text += fmt::format("{};{};{};{}\n", i, i % 3, (i + 1) % 2, cell(i));
+        of_csv(text, &cautions);
+        return cautions;
+    };
+    const auto caution = [](const std::string& cautions) {
+        return cautions.find(
+                   "\"reading\" has three digits behind every comma in 1 of 1 files: read as decimals "
+                   "(1,200 is 1.2), not as thousands") != std::string::npos;
+    };
+    CHECK(caution(readings([](int i) { return i % 2 == 0 ? "331" : "1,106"; })));
+    CHECK(caution(readings([](int i) { return i % 2 == 0 ? "+12,331" : "-1,106"; })));
+    CHECK_FALSE(caution(readings([](int i) { return i % 2 == 0 ? "1331" : "1,106"; })));
+    CHECK_FALSE(caution(readings([](int i) { return i % 2 == 0 ? "0,331" : "1,106"; })));
+    CHECK_FALSE(caution(readings([](int i) { return i % 2 == 0 ? "1,33" : "1,106"; })));
+    CHECK_FALSE(caution(readings([](int i) { return i % 2 == 0 ? "331" : "106"; })));
+}
+
 TEST_CASE("pipes and devices, which may never end, are not waited for") {
     const Folder folder;
     write_file(folder.path() / "experiment.toml", "kind = \"ground\"\n[[run]]\nfile = \"/dev/zero\"\n");
-    CHECK_THAT(refusal(folder.path()), Contains("/dev/zero: is not a file"));
+    CHECK_THAT(refusal(folder.path()), Contains("/dev/zero: is a pipe or device"));
     write_file(folder.path() / "experiment.toml", kToml);
     REQUIRE(::mkfifo((folder.path() / "a.csv").c_str(), 0600) == 0);
-    CHECK_THAT(refusal(folder.path()), Contains("a.csv") && Contains("is not a file"));
+    CHECK_THAT(refusal(folder.path()), Contains("a.csv: is a pipe or device, which may never end"));
     std::filesystem::remove(folder.path() / "experiment.toml");
     REQUIRE(::mkfifo((folder.path() / "experiment.toml").c_str(), 0600) == 0);
     CHECK_THAT(refusal(folder.path()), Contains("experiment.toml: is a pipe"));
@@ -156,6 +178,19 @@ TEST_CASE("descriptions that cannot be used are refused with a line") {
     CHECK_THAT(of_toml("kind = ground\n" + run), Contains("line 1") && Contains("texts in quotes"));
     CHECK_THAT(of_toml("kind = \"ground\"\n" + run + "sesion = \"x\"\n"), Contains("perhaps 'session'"));
     CHECK_THAT(of_toml("kind = \"ground\"\n" + run + run), Contains("a.csv is named by two runs"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n" + run + "[[run]]\nfile = \"./a.csv\"\n"),
+               Contains("a.csv, also written ./a.csv, is named by two runs (expected each file once)"));
+    CHECK_THAT(
+        of_toml("kind = \"ground\"\n[[run]]\nfile = \"\"\n"),
+        Contains("line 3: run 1: file names nothing (expected a CSV file of the experiment's folder)"));
+    for (const char* key : {"session", "unit"})
+        CHECK_THAT(
+            of_toml("kind = \"ground\"\n" + run + key + " = [1]\n"),
+            Contains(std::string("line 4: ") + key + " is not a number (expected a number, or a name"));
+    for (const std::string twice :
+         {"[columns]\n[columns]\n", "nominal = 3\n[nominal]\n", "[run]\nname = \"a\"\n"})
+        CHECK_THAT(of_toml("kind = \"ground\"\n" + twice + run),
+                   Contains("each key and each table once") && !Contains("insert_value"));
     CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngray = \"1\"\n" + run), Contains("grey"));
     CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngrey = { from = \"shade\" }\n" + run),
                Contains("shade"));
