@@ -18,15 +18,10 @@ using stats::MeasuredRun;
 
 constexpr double kWholeRun = 0.9;  // share of the later run's rows, for time series
 
-bool in_some_run(const Experiment& experiment, std::string_view column) {
-    return std::any_of(experiment.runs.begin(), experiment.runs.end(),
-                       [column](const Run& run) { return run.has(column); });
-}
-
 std::vector<std::string> measured_columns(const Experiment& experiment) {
     std::vector<std::string> observables, truths;
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
-        if (!in_some_run(experiment, info.name)) continue;
+        if (!experiment.has(info.name)) continue;
         if (info.role == Role::Observable && info.high - info.low > 1) observables.emplace_back(info.name);
         if (info.role == Role::Truth) truths.emplace_back(info.name);
     }

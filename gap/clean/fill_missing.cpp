@@ -1,13 +1,13 @@
 #include "gap/clean/fill_missing.h"
 
-#include "base/error.h"
+#include "gap/data/cells.h"
 #include "gap/data/columns.h"
+#include "gap/validate/checks.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -16,49 +16,43 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kMostLost = 0.5;  // share of a measurement
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Drawn on between neighbours if `slow`, else held; before the first value the first holds.
 void carry_on(std::vector<double>& values, bool slow) {
-    const std::vector<double> known = values;
+    const std::vector<double> given = values;
     std::size_t last = values.size();
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (!std::isnan(known[i])) {
+        if (!missing(given[i])) {
             last = i;
             continue;
         }
         std::size_t next = i;
-        while (next < known.size() && std::isnan(known[next]))
+        while (next < given.size() && missing(given[next]))
             ++next;
         if (last == values.size())
-            values[i] = known[next];
-        else if (slow && next < known.size())
-            values[i] = known[last] + (known[next] - known[last]) * static_cast<double>(i - last) /
+            values[i] = given[next];
+        else if (slow && next < given.size())
+            values[i] = given[last] + (given[next] - given[last]) * static_cast<double>(i - last) /
                                           static_cast<double>(next - last);
         else
-            values[i] = known[last];
+            values[i] = given[last];
     }
 }
 
 /// Leaves out what was measured in these rows.
-void blank(const Experiment& experiment, Run& run, const char* missing,
-           const std::vector<std::size_t>& rows) {
+void blank(const Experiment& experiment, Run& run, const char* column, const std::vector<std::size_t>& rows) {
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         const bool event = info.high - info.low <= 1;
         if (info.role != Role::Observable || event || !run.has(info.name)) continue;
         auto& values = run.columns.at(info.name);
-        const auto there =
-            std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
-        double lost = 0.0;
-        for (const std::size_t i : rows) {
-            lost += std::isnan(values[i]) ? 0 : 1;
-            values[i] = kNothing;
-        }
-        if (lost > kMostLost * static_cast<double>(there))
-            throw InputError(
-                (experiment.folder / run.file).string(), "",
-                fmt::format("{} is missing in {} of {} rows that have {}", missing, lost, there, info.name),
-                "it in most rows, or no such column");
+        const std::size_t there = values.size() - count_missing(values);
+        for (const std::size_t i : rows)
+            values[i] = std::nan("");
+        const std::size_t lost = there - (values.size() - count_missing(values));
+        if (static_cast<double>(lost) > kMostLost * static_cast<double>(there))
+            refuse(experiment, run,
+                   fmt::format("{} is missing in {} of {} rows that have {}", column, lost, there, info.name),
+                   "it in most rows, or no such column");
     }
 }
 
@@ -68,31 +62,26 @@ using ByRemedy = std::map<std::string, std::vector<MissingIn>>;
 void fill(Experiment& experiment, Run& run, const ColumnInfo& info, ByRemedy& files) {
     static const std::set<std::string_view> slow{"t_s", "temperature_c", "battery_v", "ambient_reading"};
     auto& values = run.columns.at(info.name);
-    std::vector<std::size_t> missing;
-    std::vector<double> known;
+    std::vector<std::size_t> gone;
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (std::isnan(values[i]))
-            missing.push_back(i);
-        else
-            known.push_back(values[i]);
-    if (missing.empty() || known.empty()) return;
-    std::sort(known.begin(), known.end());
+        if (missing(values[i])) gone.push_back(i);
+    std::vector<double> given = known(values);
+    if (gone.empty() || given.empty()) return;
+    std::ranges::sort(given);
     std::string done;
-    if (known.front() == known.back()) {
-        std::fill(values.begin(), values.end(), known.front());
+    if (given.front() == given.back()) {
+        std::ranges::fill(values, given.front());
         done = "filled with the run's only value";
     } else if (info.role == Role::Covariate) {
         carry_on(values, slow.contains(info.name));
         done = "filled in from the rows before and after";
     } else {
-        blank(experiment, run, info.name, missing);
-        const double usual = known[known.size() / 2];
+        blank(experiment, run, info.name, gone);
         if (experiment.kind == Kind::Rab || experiment.kind == Kind::Timing)
-            for (const std::size_t i : missing)
-                values[i] = usual;
+            std::ranges::replace_if(values, missing, given[given.size() / 2]);
         done = "which are left out";
     }
-    files[done].push_back({run.file, missing.size(), run.rows});
+    files[done].push_back({run.file, gone.size(), run.rows});
 }
 
 }  // namespace
@@ -120,9 +109,7 @@ std::string missing_sentence(std::string_view column, const std::vector<MissingI
         missing += file.missing;
         rows += file.rows;
     }
-    const auto [least, most] =
-        std::minmax_element(files.begin(), files.end(),
-                            [](const MissingIn& a, const MissingIn& b) { return a.missing < b.missing; });
+    const auto [least, most] = std::ranges::minmax_element(files, {}, &MissingIn::missing);
     return fmt::format("{} is missing in {} of {} rows ({} runs), {}{}", column, missing, rows, files.size(),
                        so,
                        least->missing == most->missing

@@ -18,7 +18,6 @@ constexpr std::size_t kMostPoints = 1500;
 constexpr double kLetter = 5.8;  // pixels wide, about
 constexpr double kSmall = 300;   // pixels wide: fewer ticks
 constexpr const char* kGrid = "#dddddd";
-constexpr const char* kInk = "#333333";
 constexpr const char* kThick = "stroke-width=\"2\"";
 
 using physics::escaped;
@@ -180,11 +179,7 @@ std::string Chart::svg(double width, double height) const {
                 all.push_back(fmt::format("{:.1f},{:.1f}", px(x[i]), py(y[i])));
         return all;
     };
-    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-                                  "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, "
-                                  "Helvetica, Arial, sans-serif\" font-size=\"10\" fill=\"{2}\">\n"
-                                  "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n",
-                                  width, height, kInk);
+    std::string out;
     const auto first_tick = [](const Scale& s) {
         return Scale{std::ceil(s.low / s.step - 1e-9) * s.step, std::floor(s.high / s.step + 1e-9) * s.step,
                      s.step};
@@ -261,7 +256,15 @@ std::string Chart::svg(double width, double height) const {
     out +=
         text_at(0, 0, y_label_, "middle",
                 fmt::format("transform=\"translate(12,{:.1f}) rotate(-90)\"", (kTop + bottom) / 2).c_str());
-    return out + "</svg>\n";
+    return svg_document(width, height, " font-size=\"10\"", out);
+}
+
+std::string svg_document(double width, double height, const char* text_style, const std::string& body) {
+    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+                       "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, Helvetica, Arial, "
+                       "sans-serif\"{2} fill=\"#333333\">\n"
+                       "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n{3}</svg>\n",
+                       width, height, text_style, body);
 }
 
 }  // namespace puckloop::gap::report

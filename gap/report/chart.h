@@ -68,4 +68,7 @@ class Chart {
     double clip_low_ = 0.0, clip_high_ = 1.0;
 };
 
+/// A picture of this size on white; `text_style`: more attributes of all its texts.
+std::string svg_document(double width, double height, const char* text_style, const std::string& body);
+
 }  // namespace puckloop::gap::report

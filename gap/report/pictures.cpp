@@ -24,29 +24,40 @@ constexpr double kCoverage = 0.9;
 
 using stats::Covariate;
 
-std::vector<double> left_over(const std::vector<double>& measured, const std::vector<double>& simulated) {
-    std::vector<double> rest(measured.size(), NAN);
+/// How the simulator is drawn, as it is and with the causes.
+struct Shown {
+    std::vector<double> Series::*values;
+    const char *colour, *name;
+    bool dashed;
+};
+constexpr Shown kShown[] = {{&Series::before, kBefore, "before", true},
+                            {&Series::after, kAfter, "after", false}};
+
+std::vector<double> left_over(const Series& series, const Shown& shown) {
+    const std::vector<double>& simulated = series.*shown.values;
+    std::vector<double> rest(series.measured.size(), NAN);
     for (std::size_t i = 0; i < rest.size() && i < simulated.size(); ++i)
-        rest[i] = measured[i] - simulated[i];
+        rest[i] = series.measured[i] - simulated[i];
     return rest;
+}
+
+std::string left_over_label(const Series& series) {
+    return with_unit(fmt::format("{}, measured − simulated", series.observable), series.unit);
 }
 
 stats::Series by_run(const Series& series, std::vector<double> value) {
     return {std::move(value), {series.run.begin(), series.run.end()}};
 }
 
-void add_means(Chart& chart, const std::vector<double>& x, const Series& series, const std::vector<double>& y,
-               const char* colour, const char* name, bool dashed) {
-    const stats::Band band = stats::bootstrap_band(by_run(series, y), x, kBins, kCoverage, {});
-    chart.line(band.x, band.y, colour, name, dashed);
-}
-
 Picture measured_and_simulated(const Series& series, const Covariate& c) {
     Chart chart("Measured and simulated", covariate_label(c.name), with_unit(series.observable, series.unit));
     chart.clip(0.002, 0.998);
     chart.points(c.value, series.measured, kMeasured, "measured");
-    add_means(chart, c.value, series, series.before, kBefore, "before", true);
-    add_means(chart, c.value, series, series.after, kAfter, "after", false);
+    for (const auto& [values, colour, name, dashed] : kShown) {
+        const stats::Band means =
+            stats::bootstrap_band(by_run(series, series.*values), c.value, kBins, kCoverage, {});
+        chart.line(means.x, means.y, colour, name, dashed);
+    }
     return {chart.svg(kWidth, kHeight),
             fmt::format("{}: readings, and the simulator's mean over them.", series.observable)};
 }
@@ -68,23 +79,20 @@ std::vector<double> as_places(const Covariate& c, std::vector<std::string>& name
 }
 
 Picture residuals(const Series& series, const Covariate& c, const char* title, std::uint64_t seed) {
-    Chart chart(title, covariate_label(c.name),
-                with_unit(fmt::format("{}, measured − simulated", series.observable), series.unit));
+    Chart chart(title, covariate_label(c.name), left_over_label(series));
     chart.level(0);
     const bool groups = c.kind == stats::CovariateKind::Label;
     std::vector<std::string> names;
     const std::vector<double> x = groups ? as_places(c, names) : c.value;
-    for (const auto& [simulated, colour, name] :
-         {std::tuple{&series.before, kBefore, "before"}, std::tuple{&series.after, kAfter, "after"}}) {
-        const std::vector<double> rest = left_over(series.measured, *simulated);
-        const stats::Band band = stats::bootstrap_band(by_run(series, rest), x, kBins, kCoverage,
-                                                       {.seed = seed, .permutations = 0});
-        const bool before = simulated == &series.before;
+    for (const Shown& shown : kShown) {
+        const stats::Band band = stats::bootstrap_band(by_run(series, left_over(series, shown)), x, kBins,
+                                                       kCoverage, {.seed = seed, .permutations = 0});
         for (std::size_t i = 0; groups && i < band.x.size(); ++i)
-            chart.interval(band.x[i] + (before ? -0.1 : 0.1), band.y[i], band.low[i], band.high[i], colour);
+            chart.interval(band.x[i] + (shown.dashed ? -0.1 : 0.1), band.y[i], band.low[i], band.high[i],
+                           shown.colour);
         if (groups) continue;
-        chart.band(band.x, band.low, band.high, colour);
-        chart.line(band.x, band.y, colour, name, before);
+        chart.band(band.x, band.low, band.high, shown.colour);
+        chart.line(band.x, band.y, shown.colour, shown.name, shown.dashed);
     }
     chart.categories(names);
     return {chart.svg(kWidth, kHeight),
@@ -101,22 +109,20 @@ std::vector<double> of_run(const Series& series, const std::vector<double>& valu
 }
 
 Picture by_run_picture(const Experiment& experiment, const Series& series) {
-    Chart chart("Left over, run by run", "run, in order of the file",
-                with_unit(fmt::format("{}, measured − simulated", series.observable), series.unit));
+    Chart chart("Left over, run by run", "run, in order of the file", left_over_label(series));
     chart.level(0);
     std::vector<std::string> names;
     const bool few = experiment.runs.size() <= 6;
     for (std::size_t r = 0; r < experiment.runs.size(); ++r)
         names.push_back(few || r % ((experiment.runs.size() + 11) / 12) == 0 ? std::to_string(r + 1) : "");
-    for (const auto& [simulated, colour, shift] :
-         {std::tuple{&series.before, kBefore, -0.12}, std::tuple{&series.after, kAfter, 0.12}}) {
-        const std::vector<double> rest = left_over(series.measured, *simulated);
+    for (const Shown& shown : kShown) {
+        const std::vector<double> rest = left_over(series, shown);
         for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
             const std::vector<double> inside = of_run(series, rest, static_cast<std::uint32_t>(r));
             const double middle = stats::median(inside);
             if (!std::isfinite(middle)) continue;
-            chart.interval(static_cast<double>(r) + shift, middle, stats::quantile(inside, 0.05),
-                           stats::quantile(inside, 0.95), colour);
+            chart.interval(static_cast<double>(r) + (shown.dashed ? -0.12 : 0.12), middle,
+                           stats::quantile(inside, 0.05), stats::quantile(inside, 0.95), shown.colour);
         }
     }
     chart.categories(names);
@@ -210,14 +216,12 @@ std::vector<Picture> path_pictures(const Experiment& experiment, const Verdict& 
             y.push_back(run.column("y_m")[static_cast<std::size_t>(at)]);
         }
         chart.line(x, y, kMeasured, "measured");
-        for (const auto& [stage, colour, name, dashed] :
-             {std::tuple{&Series::before, kBefore, "before", true},
-              {&Series::after, kAfter, "after", false}}) {
+        for (const auto& [stage, colour, name, dashed] : kShown) {
             const auto a = of_run(*along, along->*stage, number), b = of_run(*across, across->*stage, number);
             Track track{a, b};  // from where the run began
             if (room) {
-                std::for_each(track.x.begin(), track.x.end(), [&](double& one) { one += x.front(); });
-                std::for_each(track.y.begin(), track.y.end(), [&](double& one) { one += y.front(); });
+                std::ranges::for_each(track.x, [&](double& one) { one += x.front(); });
+                std::ranges::for_each(track.y, [&](double& one) { one += y.front(); });
             } else {
                 track = integrated(a, b, of_run(*heading, heading->*stage, number), x.front(), y.front(),
                                    run.column("theta_rad")[first]);

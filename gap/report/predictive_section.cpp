@@ -109,11 +109,7 @@ std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
                                 panel(*check, check->curves[k]));
         top += height_of(*check);
     }
-    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-                       "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, Helvetica, Arial, "
-                       "sans-serif\" fill=\"#333333\">\n<rect width=\"{0:.0f}\" height=\"{1:.0f}\" "
-                       "fill=\"#ffffff\"/>\n{2}</svg>\n",
-                       kColumns * kWidth, top, body);
+    return svg_document(kColumns * kWidth, top, "", body);
 }
 
 }  // namespace

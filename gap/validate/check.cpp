@@ -2,6 +2,7 @@
 
 #include "gap/clean/copies.h"
 #include "gap/clean/fill_missing.h"
+#include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/data/problems.h"
 #include "gap/validate/checks.h"
@@ -34,25 +35,21 @@ std::string unit_text(const ColumnInfo& info) {
 /// and count as missing.
 void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
     auto& values = run.columns.at(info.name);
-    std::size_t outside = 0, present = 0, first = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isnan(values[i])) continue;
-        ++present;
-        if (values[i] >= info.low && values[i] <= info.high) continue;
-        if (outside++ == 0) first = i;
-    }
+    const auto impossible = [&](double value) { return value < info.low || value > info.high; };
+    const auto outside = std::ranges::count_if(values, impossible);
     if (outside == 0) return;
-    if (static_cast<double>(outside) < kFewOutside * static_cast<double>(present)) {
-        experiment.caution("{}: {} = {:.6g}{} in row {} is impossible ({} of {} rows): taken as missing",
-                           run.file, info.name, values[first], unit_text(info), first + 1, outside, present);
-        for (double& value : values)
-            if (value < info.low || value > info.high) value = std::nan("");
-        return;
-    }
-    refuse(experiment, run,
-           fmt::format("{} = {:.6g}{} is impossible: wrong unit or swapped columns ({} of {} rows)",
-                       info.name, values[first], unit_text(info), outside, present),
-           fmt::format("{:g} to {:g}{}", info.low, info.high, unit_text(info)), static_cast<long>(first));
+    const auto present = values.size() - count_missing(values);
+    const auto first = std::ranges::find_if(values, impossible) - values.begin();
+    const std::string value =
+        fmt::format("{} = {:.6g}{}", info.name, values[static_cast<std::size_t>(first)], unit_text(info));
+    if (static_cast<double>(outside) >= kFewOutside * static_cast<double>(present))
+        refuse(experiment, run,
+               fmt::format("{} is impossible: wrong unit or swapped columns ({} of {} rows)", value, outside,
+                           present),
+               fmt::format("{:g} to {:g}{}", info.low, info.high, unit_text(info)), first);
+    experiment.caution("{}: {} in row {} is impossible ({} of {} rows): taken as missing", run.file, value,
+                       first + 1, outside, present);
+    std::ranges::replace_if(values, impossible, std::nan(""));
 }
 
 /// Columns that number something: between two of them is nothing.
@@ -65,7 +62,7 @@ bool is_index(const ColumnInfo& info) {
 void check_index(const Experiment& experiment, const Run& run, const ColumnInfo& info) {
     const auto& values = run.column(info.name);
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (!std::isnan(values[i]) && values[i] != std::round(values[i]))
+        if (!missing(values[i]) && values[i] != std::round(values[i]))
             refuse(experiment, run, fmt::format("{} = {:.6g} is not whole", info.name, values[i]),
                    "whole numbers; or the columns are swapped", static_cast<long>(i));
 }
@@ -75,15 +72,14 @@ void check_missing(Experiment& experiment, const ColumnInfo& info) {
     std::vector<MissingIn> files;
     for (const Run& run : experiment.runs) {
         const auto& values = run.column(info.name);
-        const auto missing = static_cast<std::size_t>(
-            std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
-        if (missing == 0) continue;
-        const double share = static_cast<double>(missing) / static_cast<double>(values.size());
+        const std::size_t gone = count_missing(values);
+        if (gone == 0) continue;
+        const double share = static_cast<double>(gone) / static_cast<double>(values.size());
         if (info.required && share > kMostMissing)
             refuse(experiment, run,
-                   fmt::format("{} is missing in {} of {} rows", info.name, missing, values.size()),
+                   fmt::format("{} is missing in {} of {} rows", info.name, gone, values.size()),
                    info.role == Role::Truth ? "the truth in most rows" : "it in most rows");
-        files.push_back({run.file, missing, values.size()});
+        files.push_back({run.file, gone, values.size()});
     }
     if (files.empty()) return;
     if (info.required)
@@ -100,9 +96,7 @@ void drop_empty(Experiment& experiment) {
         std::string where;
         for (Run& run : experiment.runs) {
             const auto& values = run.column(info.name);
-            if (info.required || values.empty() ||
-                !std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
-                continue;
+            if (info.required || values.empty() || count_missing(values) < values.size()) continue;
             run.columns.erase(run.columns.find(info.name));
             where = ++runs == 1 ? run.file : fmt::format("{} runs", runs);
         }
@@ -117,17 +111,14 @@ void drop_empty(Experiment& experiment) {
 void check_clipped(Experiment& experiment, const ColumnInfo& info) {
     const auto instrument = experiment.instruments.find(info.name);
     if (instrument == experiment.instruments.end()) return;
-    std::size_t clipped = 0, present = 0;
-    for (const Run& run : experiment.runs)
-        for (const double value : run.column(info.name)) {
-            if (std::isnan(value)) continue;
-            ++present;
-            if (instrument->second.at_end(value)) ++clipped;
-        }
+    const std::vector<double> values = known(pooled(experiment, info.name));
+    const auto clipped =
+        std::ranges::count_if(values, [&](double value) { return instrument->second.at_end(value); });
     const double share =
-        static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(present, 1));
-    const std::string clipping = fmt::format(
-        "{} is at or beyond [instrument]'s floor or ceiling in {} of {} rows", info.name, clipped, present);
+        static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(values.size(), 1));
+    const std::string clipping =
+        fmt::format("{} is at or beyond [instrument]'s floor or ceiling in {} of {} rows", info.name, clipped,
+                    values.size());
     if (share > kMostClipped) refuse(experiment, clipping, "readings between the two");
     if (share > kManyClipped)
         experiment.cautions.push_back(clipping + ": such rows only say 'at least this far'");
@@ -139,28 +130,25 @@ void check_clock(Experiment& experiment, const Run& run, const char* name) {
     double last = std::nan("");
     std::vector<double> steps;
     for (std::size_t i = 0; i < times.size(); ++i) {
-        if (std::isnan(times[i])) continue;
+        if (missing(times[i])) continue;
         if (times[i] < last)
             refuse(experiment, run, fmt::format("{} goes back from {:.6g} to {:.6g} s", name, last, times[i]),
                    "a clock that runs forward: one run a file", static_cast<long>(i));
-        if (!std::isnan(last)) steps.push_back(times[i] - last);
+        if (!missing(last)) steps.push_back(times[i] - last);
         last = times[i];
     }
-    if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) <= 0) {
+    if (steps.empty()) return;
+    std::ranges::sort(steps);
+    const double usual = steps[steps.size() / 2], longest = steps.back();
+    if (longest <= 0) {
         if (experiment.kind == Kind::Motion || experiment.kind == Kind::Timing)
             refuse(experiment, run, fmt::format("the clock {} stands still", name), "a time for every row");
         experiment.caution("{}: the clock {} stands still: what depends on time cannot be seen", run.file,
                            name);
     }
-    if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) > kLongestGap)
-        refuse(experiment, run,
-               fmt::format("{} jumps by {:.3g} s", name, *std::max_element(steps.begin(), steps.end())),
-               "seconds");
-    if (steps.size() < 10) return;
-    std::sort(steps.begin(), steps.end());
-    const double usual = steps[steps.size() / 2];
-    const double longest = steps.back();
-    if (usual > 0 && longest > 50 * usual && longest > 1.0)
+    if (longest > kLongestGap)
+        refuse(experiment, run, fmt::format("{} jumps by {:.3g} s", name, longest), "seconds");
+    if (steps.size() >= 10 && usual > 0 && longest > 50 * usual && longest > 1.0)
         experiment.caution("{}: the clock {} jumps by {:.3g} s (a step is {:.3g} s): "
                            "rows before and after are not taken as neighbours",
                            run.file, name, longest, usual);
@@ -183,10 +171,8 @@ void check_hung(Experiment& experiment, const ColumnInfo& info) {
     if (info.role != Role::Observable || std::string_view(info.unit) == "1") return;
     for (const Run& run : experiment.runs) {
         const auto& values = run.column(info.name);
-        if (run.rows < kRunRows) continue;
-        if (std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); }))
-            continue;
-        if (values.empty() || std::isnan(values.front())) continue;
+        if (run.rows < kRunRows || values.empty()) continue;
+        if (std::ranges::any_of(values, [&](double value) { return value != values.front(); })) continue;
         experiment.caution("{}: {} is {:g}{} in every row of this run: did it hang?", run.file, info.name,
                            values.front(), unit_text(info));
     }
@@ -203,10 +189,8 @@ void check_runs(Experiment& experiment) {
     else if (experiment.runs.size() < 4)
         experiment.caution("there are only {} runs: intervals over runs are wide and uncertain",
                            experiment.runs.size());
-    std::set<double> units;
-    for (const Run& run : experiment.runs)
-        for (const double value : run.column("unit"))
-            if (!std::isnan(value)) units.insert(value);
+    const std::vector<double> named = known(pooled(experiment, "unit"));
+    const std::set<double> units(named.begin(), named.end());
     if (units.size() > 1)
         experiment.caution("{} robots are mixed: what is found is common to them; a "
                            "difference between robots shows as structure against unit",

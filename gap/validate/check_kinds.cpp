@@ -49,31 +49,21 @@ bool contrary(const std::vector<Run>& runs, const Correlation& of) {
 /// A reflective sensor sees more when the wall is nearer; the other way round the columns are exchanged or
 /// the reading has the wrong sign.
 void check_proximity(Experiment& experiment) {
-    std::vector<double> distances, readings;
-    for (const Run& run : experiment.runs) {
-        distances.insert(distances.end(), run.column("distance_m").begin(), run.column("distance_m").end());
-        readings.insert(readings.end(), run.column("reading").begin(), run.column("reading").end());
-    }
-    const double correlation = rank_correlation(distances, readings);
+    const std::vector<double> readings = pooled(experiment, "reading");
+    const double correlation = rank_correlation(pooled(experiment, "distance_m"), readings);
     if (correlation > 0.5)
         refuse(experiment, experiment.runs.front(),
                fmt::format("reading grows with distance_m (rank correlation {:.2f}): columns swapped, or "
                            "ambient counts instead of ambient minus lit",
                            correlation),
                "readings that fall with distance");
-    std::vector<double> angles;
-    for (const Run& run : experiment.runs)
-        if (run.has("angle_rad"))
-            for (const double angle : run.column("angle_rad"))
-                angles.push_back(std::abs(angle));
-        else
-            angles.insert(angles.end(), run.rows, std::nan(""));
+    std::vector<double> angles = pooled(experiment, "angle_rad");
+    for (double& angle : angles)
+        angle = std::abs(angle);
     if (std::abs(correlation) < 0.3 && rank_correlation(angles, readings) < -0.85)
         experiment.cautions.emplace_back(
             "readings fall with angle_rad and not with distance_m: are the two columns swapped?");
-    const double furthest = *std::max_element(distances.begin(), distances.end(), [](double a, double b) {
-        return std::isnan(a) || (!std::isnan(b) && a < b);
-    });
+    const double furthest = experiment.range("distance_m").high;
     if (furthest > 1.0)
         refuse(
             experiment, experiment.runs.front(),
@@ -161,17 +151,12 @@ void check_accelerometer(Experiment& experiment) {
     const double zero = experiment.nominal_or("accelerometer.zero", 2048),
                  gain = experiment.nominal_or("accelerometer.gain", 800);
     for (const Run& run : experiment.runs) {
-        double sum = 0.0, count = 0.0;
-        for (const double value : run.column("az"))
-            if (!std::isnan(value)) {
-                sum += (value - zero) / gain;
-                ++count;
-            }
-        if (count > 0 && (sum / count < 0.2 || sum / count > 3.0))
+        const double up = (stats::mean(run.column("az")) - zero) / gain;
+        if (up < 0.2 || up > 3.0)
             refuse(experiment, run,
                    fmt::format("az is {:.2f} g on average: axes swapped, or accelerometer.zero and gain of "
                                "another sensor",
-                               sum / count),
+                               up),
                    "about 1 g; say accelerometer.zero and accelerometer.gain in [nominal]");
         constexpr double kClear = 0.7, kNone = 0.3;
         const auto rear = felt(run, "pitch_rad", "acceleration", -1.0);
@@ -236,6 +221,16 @@ void check_rab(Experiment& experiment) {
 }
 
 }  // namespace
+
+std::vector<double> pooled(const Experiment& experiment, std::string_view column) {
+    std::vector<double> all;
+    for (const Run& run : experiment.runs) {
+        const auto& values = run.column(column);
+        all.insert(all.end(), values.begin(), values.end());
+        if (values.empty()) all.insert(all.end(), run.rows, std::nan(""));
+    }
+    return all;
+}
 
 void check_kind(Experiment& experiment) {
     constexpr std::array kChecks{check_proximity, check_motion,        check_rab,   check_microphone,

@@ -1,5 +1,6 @@
 #include "gap/validate/checks.h"
 
+#include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/stats/robust.h"
 
@@ -130,18 +131,12 @@ void check_frames(Experiment& experiment, Run& run) {
                            "robots are mixed, or given twice",
                            seq[first], seq[first - 1], back, seq.size()),
                "one robot a file, each frame once", static_cast<long>(first));
-    const auto &host = run.column("t_host_s"), &period = run.column("nominal_period");
+    const auto host = known(run.column("t_host_s"));
+    const auto& period = run.column("nominal_period");
     if (!seq.empty() || period.empty() || std::isnan(period.front())) return;
-    double begin = NAN, end = NAN;
-    std::size_t frames = 0;
-    for (const double t : host) {
-        if (std::isnan(t)) continue;
-        if (frames++ == 0) begin = t;
-        end = t;
-    }
-    const double ratio =
-        (end - begin) / static_cast<double>(std::max<std::size_t>(frames, 2) - 1) / period.front();
-    if (frames >= kEnough && ratio > 0.4 && ratio < 0.6)
+    if (host.size() < kEnough) return;
+    const double ratio = (host.back() - host.front()) / static_cast<double>(host.size() - 1) / period.front();
+    if (ratio > 0.4 && ratio < 0.6)
         experiment.caution("{}: frames come every {:.3g} s where nominal_period is "
                            "{:.3g} s: another period, or frames of two robots mixed?",
                            run.file, ratio * period.front(), period.front());

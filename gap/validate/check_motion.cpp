@@ -3,6 +3,7 @@
 #include "gap/stats/robust.h"
 #include "physics/description/robot_constants.h"
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@ constexpr double kFactor = 5.0;        // between what two columns say of one th
 constexpr double kSideways = 0.6;      // share of a straight step that must lie along the heading
 
 struct Path {
-    double length = 0.0;             // tracked
-    double left = 0.0, right = 0.0;  // steps of either wheel, absolute
+    double length = 0.0;  // tracked
+    double steps = 0.0;   // of both wheels, absolute
     double duration = 0.0, largest_turn = 0.0;
 };
 
@@ -37,11 +38,8 @@ Path measure(const Run& run) {
             const double turn = std::remainder(theta[i] - theta[last], 2 * std::numbers::pi);
             path.length += std::hypot(x[i] - x[last], y[i] - y[last]);
             path.largest_turn = std::max(path.largest_turn, std::abs(turn));
-            if (!left.empty() && !right.empty() &&
-                !std::isnan(left[i] + right[i] + left[last] + right[last])) {
-                path.left += std::abs(left[i] - left[last]);
-                path.right += std::abs(right[i] - right[last]);
-            }
+            if (!left.empty() && !right.empty() && !std::isnan(left[i] + right[i] + left[last] + right[last]))
+                path.steps += std::abs(left[i] - left[last]) + std::abs(right[i] - right[last]);
             path.duration += time[i] - time[last];
         }
         last = i;
@@ -75,23 +73,24 @@ void check_commands(const Experiment& experiment, const Run& run) {
     const auto &time = run.column("t_s"), &left = run.column("steps_left"),
                &right = run.column("steps_right"), &cmd_left = run.column("cmd_left"),
                &cmd_right = run.column("cmd_right");
-    double own = 0.0, crossed = 0.0, counted = 0.0, asked = 0.0;
-    std::array<double, 2> ran{}, commanded{}, along{};  // a wheel each
+    double own = 0.0, crossed = 0.0;
+    Eigen::Array2d ran(0, 0), commanded(0, 0), along(0, 0);  // of left and right wheel
     const std::vector<double> spans = stats::steps_of(time);
     if (spans.empty()) return;
     const double longest = 10 * stats::upper_median(spans);  // beyond is a gap in the record
     for (std::size_t i = 1; i < run.rows; ++i) {
-        const double span = time[i] - time[i - 1], l = left[i] - left[i - 1], r = right[i] - right[i - 1],
-                     cl = cmd_left[i - 1] * span, cr = cmd_right[i - 1] * span;
-        if (std::isnan(l + r + cl + cr) || span > longest) continue;
-        own += std::abs(l - cl) + std::abs(r - cr);
-        crossed += std::abs(l - cr) + std::abs(r - cl);
-        ran[0] += std::abs(l), ran[1] += std::abs(r);
-        commanded[0] += std::abs(cl), commanded[1] += std::abs(cr);
-        along[0] += std::copysign(l, l * cl), along[1] += std::copysign(r, r * cr);
-        counted += std::abs(l) + std::abs(r);
-        asked += std::abs(cl) + std::abs(cr);
+        const double span = time[i] - time[i - 1];
+        const Eigen::Array2d steps(left[i] - left[i - 1], right[i] - right[i - 1]),
+            wanted(cmd_left[i - 1] * span, cmd_right[i - 1] * span);
+        if ((steps + wanted).hasNaN() || span > longest) continue;
+        own += (steps - wanted).abs().sum();
+        crossed += (steps - wanted.reverse()).abs().sum();
+        ran += steps.abs();
+        commanded += wanted.abs();
+        for (const int w : {0, 1})
+            along[w] += std::copysign(steps[w], steps[w] * wanted[w]);
     }
+    const double counted = ran.sum(), asked = commanded.sum();
     constexpr double kEnough = 500;  // steps asked for, both wheels
     if (asked > kEnough && (counted > kFactor * asked || counted < asked / kFactor))
         refuse(experiment, run,
@@ -100,12 +99,12 @@ void check_commands(const Experiment& experiment, const Run& run) {
                            counted, asked),
                "steps/s and seconds");
     constexpr const char* kSide[] = {"left", "right"};
-    for (std::size_t w = 0; w < 2; ++w)
+    for (const int w : {0, 1})
         if (commanded[w] > kEnough && ran[w] == 0)
             refuse(experiment, run,
                    fmt::format("steps_{} stands still while its wheel is commanded", kSide[w]),
                    "a counter that counts");
-    for (std::size_t w = 0; w < 2; ++w)
+    for (const int w : {0, 1})
         if (commanded[w] > kEnough && along[w] < -ran[w] / 2)
             refuse(experiment, run,
                    fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign", kSide[w]),
@@ -255,7 +254,7 @@ void check_motion(Experiment& experiment) {
                 path.largest_turn);
         const auto& theta = run.column("theta_rad");
         steps = steps || run.has("steps_left");
-        driven += (path.left + path.right) / 2 * metre_per_step;
+        driven += path.steps / 2 * metre_per_step;
         for (std::size_t i = 1; i < run.rows; ++i) {
             const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
             const auto [left, right] = steps_made(run, i);

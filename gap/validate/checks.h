@@ -9,6 +9,8 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace puckloop::gap {
 
@@ -24,6 +26,9 @@ namespace puckloop::gap {
                                 const std::string& expected) {
     throw InputError((experiment.folder / "experiment.toml").string(), "", problem, expected);
 }
+
+/// A column of all runs, one behind the other; NaN in the rows of runs without it.
+std::vector<double> pooled(const Experiment& experiment, std::string_view column);
 
 /// [nominal]: what no robot can have is refused; a caution for what is far from anything that the simulator's
 /// robot can have, mostly a number in another unit.
