@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <map>
 
 namespace puckloop::gap {
 
@@ -22,46 +21,36 @@ constexpr double kWithin = 3.0;  // factor: what is left and how many causes the
 Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
     Readiness ready;
     Problems problems;
-    Experiment experiment;
-    const bool read = attempt(&problems, [&] { experiment = survey_experiment(folder, problems); });
+    attempt(&problems, [&] { ready.experiment = survey_experiment(folder, problems); });
+    if (problems.empty())
+        attempt(&problems, [&] {  // [nominal] is the model's to check
+            const Study study(*ready.experiment, 1, threads);
+            for (const Candidate& candidate : study.candidates()) {
+                auto& causes =
+                    candidate.remark.empty() ? ready.looked_for : ready.blind[plain_remark(candidate.remark)];
+                causes.emplace_back(candidate.effect->name);
+            }
+            ready.seconds = expected_seconds(*ready.experiment, threads);
+        });
     ready.problems = problems.lines();
-    if (!read) return ready;
-    ready.title = experiment.title;
-    ready.kind = kind_name(experiment.kind);
-    ready.cautions = experiment.cautions;
-    ready.runs = experiment.runs.size();
-    ready.rows = experiment.rows();
-    if (!ready.problems.empty()) return ready;
-    attempt(&problems, [&] {  // [nominal] is the model's to check
-        const Study study(experiment, 1, threads);
-        for (const Candidate& candidate : study.candidates()) {
-            if (candidate.remark.empty())
-                ready.looked_for.emplace_back(candidate.effect->name);
-            else
-                ready.blind.push_back({candidate.effect->name, candidate.effect->title, candidate.remark});
-        }
-    });
-    ready.problems = problems.lines();
-    ready.seconds = expected_seconds(experiment, threads);
     return ready;
 }
 
 std::string readiness_text(const Readiness& ready) {
     std::string text;
-    if (!ready.kind.empty())
-        text +=
-            fmt::format("{}: kind {}, {} runs, {} rows\n", ready.title, ready.kind, ready.runs, ready.rows);
+    if (ready.experiment)
+        text += fmt::format("{}: kind {}, {} runs, {} rows\n", ready.experiment->title,
+                            kind_name(ready.experiment->kind), ready.experiment->runs.size(),
+                            ready.experiment->rows());
     for (const auto& problem : ready.problems)
         text += fmt::format("wrong: {}\n", problem);
-    for (const auto& caution : ready.cautions)
-        text += fmt::format("caution: {}\n", caution);
+    if (ready.experiment)
+        for (const auto& caution : ready.experiment->cautions)
+            text += fmt::format("caution: {}\n", caution);
     if (!ready.problems.empty())
         return text + fmt::format("not ready: {} thing{} to put right, then check again\n",
                                   ready.problems.size(), ready.problems.size() == 1 ? "" : "s");
-    std::map<std::string, std::vector<std::string>> by_reason;
-    for (const auto& blind : ready.blind)
-        by_reason[plain_remark(blind.why)].push_back(blind.name);
-    for (const auto& [why, names] : by_reason)
+    for (const auto& [why, names] : ready.blind)
         text += fmt::format("cannot be found: {} ({})\n", fmt::join(names, ", "), why);
     text += fmt::format("can be found: {}\n", fmt::join(ready.looked_for, ", "));
     return text +

@@ -4,26 +4,20 @@
 
 #include "gap/data/experiment.h"
 
-#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace puckloop::gap {
 
 struct Readiness {
-    std::vector<std::string>
-        problems;  ///< one line each, with file, row, column and remedy; empty: it can be used
-    std::vector<std::string> cautions;
-
-    /// A cause of the catalogue, and why it cannot be found in this data.
-    struct Blind {
-        std::string name, title, why;
-    };
-    std::vector<std::string> looked_for;  ///< names of causes that can be tried
-    std::vector<Blind> blind;
-
-    std::string title, kind;
-    std::size_t runs = 0, rows = 0;
+    /// One line each, with file, row, column and remedy; empty: it can be used.
+    std::vector<std::string> problems;
+    std::optional<Experiment> experiment;  ///< as far as it could be read
+    std::vector<std::string> looked_for;   ///< names of the catalogue's causes that can be tried
+    std::map<std::string, std::vector<std::string>> blind;  ///< of the others, by why they cannot be found
     double seconds = 0.0;  ///< expected for the verdict; 0 where it cannot be used
 };
 

@@ -1,4 +1,4 @@
-#include "gap/clean/copies.h"
+#include "gap/clean/clean.h"
 
 #include "gap/data/columns.h"
 #include "gap/stats/duplicates.h"

@@ -1,4 +1,4 @@
-#include "gap/clean/fill_missing.h"
+#include "gap/clean/clean.h"
 
 #include "gap/data/cells.h"
 #include "gap/data/columns.h"

@@ -177,6 +177,10 @@ std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si) {
     return std::nullopt;
 }
 
+std::string unit_suffix(std::string_view unit) {
+    return unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit);
+}
+
 std::string units_of(std::string_view si) {
     std::vector<std::string_view> names;
     for (const UnitInfo& unit : kUnits.at(si))

@@ -31,6 +31,9 @@ std::span<const ColumnInfo> columns_of(Kind kind);
 /// nullptr if the kind has no such column.
 const ColumnInfo* find_column(Kind kind, std::string_view name);
 
+/// " counts"; "" for pure numbers.
+std::string unit_suffix(std::string_view unit);
+
 /// value_si = value * factor + offset
 struct ToSi {
     double factor = 1.0, offset = 0.0;

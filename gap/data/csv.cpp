@@ -21,6 +21,7 @@ constexpr const char* kHeader = "header";
 
 /// The text with what is not UTF-8 as '?': files of another encoding are common, their numbers are fine.
 std::string readable(std::string_view text) {
+    constexpr std::size_t kLongest = 40;
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
         const auto lead = static_cast<unsigned char>(text[i]);
@@ -33,16 +34,10 @@ std::string readable(std::string_view text) {
         bool good = length > 0 && i + length <= text.size() && lead >= 0x20 && lead != 0x7F;
         for (std::size_t k = 1; good && k < length; ++k)
             good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-        out += good ? std::string(text.substr(i, length)) : "?";
-        i += good ? length : 1;
-    }
-    constexpr std::size_t kLongest = 40;
-    if (out.size() > kLongest) {
-        out.resize(kLongest);
-        while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xC0) == 0x80)
-            out.pop_back();
-        if (!out.empty() && static_cast<unsigned char>(out.back()) >= 0xC2) out.pop_back();
-        out += "...";
+        const std::string_view next = good ? text.substr(i, length) : "?";
+        if (out.size() + next.size() > kLongest) return out + "...";
+        out += next;
+        i += next.size();
     }
     return out;
 }

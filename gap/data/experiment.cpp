@@ -8,7 +8,7 @@
 #include "gap/data/problems.h"
 #include "gap/sync/frames.h"
 #include "gap/sync/pauses.h"
-#include "gap/validate/check.h"
+#include "gap/validate/checks.h"
 #include "scenarios/reader.h"
 
 #include <fmt/format.h>

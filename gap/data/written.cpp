@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <ranges>
 #include <system_error>
 
 namespace puckloop::gap {
@@ -86,10 +87,8 @@ std::string experiment_toml(const WrittenExperiment& e) {
                                                                 {"licence", e.licence}};
     for (const auto& [key, value] : texts)
         if (!value.empty()) text += fmt::format("{} = {}\n", key, quoted(value));
-    std::vector<std::string> assumed;
-    for (const std::string& name : e.assumed)
-        assumed.push_back(quoted(name));
-    if (!assumed.empty()) text += fmt::format("assumed = [{}]\n", fmt::join(assumed, ", "));
+    if (!e.assumed.empty())
+        text += fmt::format("assumed = [{}]\n", fmt::join(e.assumed | std::views::transform(quoted), ", "));
     if (!e.nominal.empty()) text += "\n[nominal]\n";
     for (const auto& [name, value] : e.nominal)
         text += fmt::format("{} = {}\n", quoted(name), toml_number(value));

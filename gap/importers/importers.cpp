@@ -12,6 +12,22 @@
 
 namespace puckloop::gap::importers {
 
+namespace {
+
+/// InputError where out/folder holds an experiment.toml that this import would not write as it is.
+void refuse_edited(const WrittenExperiment& experiment, const std::filesystem::path& out) {
+    const std::filesystem::path file = out / experiment.folder / "experiment.toml";
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string known{std::istreambuf_iterator<char>(stream), {}};
+    if (known != experiment_toml(experiment))
+        throw InputError(file.string(), "", "is there already, another or edited, and would be written over",
+                         "a new folder");
+}
+
+}  // namespace
+
 const std::vector<Importer>& importers() {
     static const std::vector<Importer> list{kEpuckBoxBearing, kArgosEpuckRab, kThymioSensors, kOptiodom,
                                             kThymioVicon,     kRohBearing,    kUnifrTiming};
@@ -36,17 +52,6 @@ const Importer& importer_for(const std::filesystem::path& folder, const std::str
     for (const Importer& importer : importers())
         known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", importer.name, importer.recognised_by);
     throw InputError(folder.string(), "", "holds no data set known here", known);
-}
-
-void refuse_edited(const WrittenExperiment& experiment, const std::filesystem::path& out) {
-    const std::filesystem::path file = out / experiment.folder / "experiment.toml";
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) return;
-    std::ifstream stream(file, std::ios::binary);
-    const std::string known{std::istreambuf_iterator<char>(stream), {}};
-    if (known != experiment_toml(experiment))
-        throw InputError(file.string(), "", "is there already, another or edited, and would be written over",
-                         "a new folder");
 }
 
 std::vector<WrittenExperiment> import_set(const std::filesystem::path& folder, const std::string& set,

@@ -25,9 +25,6 @@ const std::vector<Importer>& importers();
 /// otherwise.
 const Importer& importer_for(const std::filesystem::path& folder, const std::string& set);
 
-/// InputError where out/folder holds an experiment.toml that this import would not write as it is.
-void refuse_edited(const WrittenExperiment& experiment, const std::filesystem::path& out);
-
 /// Reads the set and writes its experiments under `out`. Returns what was written.
 std::vector<WrittenExperiment> import_set(const std::filesystem::path& folder, const std::string& set,
                                           const std::filesystem::path& out);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace puckloop::gap::importers {
 
@@ -56,11 +57,9 @@ std::vector<double> thinned(const std::vector<double>& values) {
     return kept;
 }
 
-std::vector<double> summed(const std::vector<double>& counts) {
-    std::vector<double> sum;
-    for (const double c : counts)
-        sum.push_back((sum.empty() ? 0.0 : sum.back()) + c);
-    return sum;
+std::vector<double> summed(std::vector<double> counts) {
+    std::partial_sum(counts.begin(), counts.end(), counts.begin());
+    return counts;
 }
 
 WrittenRun read_run(const std::filesystem::path& file, const std::string& session) {

@@ -72,11 +72,9 @@ double usual_loop(std::vector<double> loops) {
 
 WrittenRun read_run(const std::filesystem::path& file) {
     const std::vector<double> loops = loops_of(file);
-    std::vector<double> arrival, seq;
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-        arrival.push_back((arrival.empty() ? 0.0 : arrival.back()) + loops[i]);
-        seq.push_back(static_cast<double>(i));
-    }
+    std::vector<double> arrival(loops.size()), seq(loops.size());
+    std::partial_sum(loops.begin(), loops.end(), arrival.begin());
+    std::iota(seq.begin(), seq.end(), 0.0);
     WrittenRun run;
     run.name = file.stem().string().substr(std::string("results_go_on_").size());
     run.constants["nominal_period"] = usual_loop(loops);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -43,9 +44,9 @@ void tell_apart(const Verdict& verdict, std::vector<std::string>& steps) {
 
 /// Runs, and what goes on within them, are no column that could be set.
 bool can_be_varied(std::string_view covariate) {
-    return covariate != "run" && !covariate.ends_with(" a run") && covariate != "time" &&
-           covariate != "order" && covariate != "previous sample" && covariate != "predicted level" &&
-           covariate != "spread per run";
+    static const std::set<std::string_view> kGiven{
+        "run", "time", "order", "previous sample", "predicted level", "spread per run"};
+    return !kGiven.contains(covariate) && !covariate.ends_with(" a run");
 }
 
 void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& steps) {

@@ -35,9 +35,8 @@ std::string header_section(const Experiment& experiment, const Verdict& verdict)
     std::string about = fmt::format("{} experiment{}; {} runs, {} rows; seed {}.", kind_name(experiment.kind),
                                     experiment.robot.empty() ? "" : " with " + experiment.robot,
                                     experiment.runs.size(), experiment.rows(), verdict.seed);
-    for (const std::string& text : {experiment.source.empty() ? "" : "Data: " + experiment.source,
-                                    experiment.licence.empty() ? "" : "(" + experiment.licence + ")."})
-        if (!text.empty()) about += " " + text;
+    if (!experiment.source.empty()) about += " Data: " + experiment.source;
+    if (!experiment.licence.empty()) about += " (" + experiment.licence + ").";
     return fmt::format("<h1>{}</h1>\n<p class=\"about\">{}<br>{}</p>\n", escaped(experiment.title),
                        escaped(about), escaped(experiment.description));
 }

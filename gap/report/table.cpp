@@ -34,12 +34,9 @@ std::string Table::html() const {
 }
 
 int digits_to_tell(double low, double value, double high) {
-    constexpr int kUsual = 4, kMost = 8;
-    int digits = kUsual;
-    while (digits < kMost && low < value && value < high &&
-           (cell(low, digits) == cell(value, digits) || cell(value, digits) == cell(high, digits)))
-        ++digits;
-    return digits;
+    constexpr int kUsual = 4;
+    return kUsual + stats::more_digits(low, value, high,
+                                       [](double one, int more) { return cell(one, kUsual + more); });
 }
 
 std::string cell(double value, int digits) {

@@ -28,4 +28,15 @@ std::string shape_words(const Profile& profile, std::string_view covariate);
 /// A number as a person writes it: four significant digits, no exponent for everyday sizes.
 std::string plain(double value, int digits = 4);
 
+/// By how many digits more than usual, four at the most, the ends and the middle of a narrow interval read
+/// differently. `read(value, more)`: a value as a text.
+template <class Read>
+int more_digits(double low, double middle, double high, const Read& read) {
+    int more = 0;
+    while (more < 4 && low < middle && middle < high &&
+           (read(low, more) == read(middle, more) || read(middle, more) == read(high, more)))
+        ++more;
+    return more;
+}
+
 }  // namespace puckloop::gap::stats

@@ -65,16 +65,18 @@ std::vector<Window> windows_of(const CountedPath& path, const ClockError& clock)
     return all;
 }
 
-/// The robot's own numbers: way and heading as sums of what was counted, turned and waited.
-struct Robot {
-    std::array<Eigen::Vector3d, 2> share{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-    std::array<double, 2> sd{1.0, 1.0};
-};
-
 Eigen::Vector3d terms(const Window& one, std::size_t k) {
     return k == 0 ? Eigen::Vector3d(one.counted[0], one.seen[1], 0.0)
                   : Eigen::Vector3d(one.counted[1], one.counted[0], one.span);
 }
+
+/// The robot's own numbers: way and heading as sums of what was counted, turned and waited.
+struct Robot {
+    std::array<Eigen::Vector3d, 2> share{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    std::array<double, 2> sd{1.0, 1.0};
+
+    double error(const Window& one, std::size_t k) const { return one.seen[k] - share[k].dot(terms(one, k)); }
+};
 
 double weight_of(double error, double sd) {
     constexpr double kHuber = 2.0;
@@ -89,7 +91,7 @@ Robot robot_of(const std::vector<std::vector<Window>>& runs, const Robot& before
         for (const auto& run : runs)
             for (const Window& one : run) {
                 const Eigen::Vector3d x = terms(one, k);
-                const double weight = weight_of(one.seen[k] - before.share[k].dot(x), before.sd[k]);
+                const double weight = weight_of(before.error(one, k), before.sd[k]);
                 normal += weight * x * x.transpose();
                 right += weight * x * one.seen[k];
             }
@@ -97,7 +99,7 @@ Robot robot_of(const std::vector<std::vector<Window>>& runs, const Robot& before
         std::vector<double> sizes;
         for (const auto& run : runs)
             for (const Window& one : run)
-                sizes.push_back(std::abs(one.seen[k] - robot.share[k].dot(terms(one, k))));
+                sizes.push_back(std::abs(robot.error(one, k)));
         robot.sd[k] = robust_sd(std::move(sizes));
     }
     return robot;
@@ -109,7 +111,7 @@ void correct(const std::vector<Window>& run, const Robot& robot, bool steady, Cl
     Eigen::Vector2d right(-clock.late / (kPrior * kPrior), -clock.drift / (kPrior * kPrior));
     for (const Window& one : run)
         for (std::size_t k = 0; k < 2; ++k) {
-            const double error = one.seen[k] - robot.share[k].dot(terms(one, k));
+            const double error = robot.error(one, k);
             const Eigen::Vector2d slope(robot.share[k][0] * one.late[k], robot.share[k][0] * one.drift[k]);
             const double weight = weight_of(error, robot.sd[k]) / (robot.sd[k] * robot.sd[k]);
             normal += weight * slope * slope.transpose();
@@ -155,7 +157,7 @@ Clocks fit_clocks(const std::vector<CountedPath>& paths, bool steady) {
         double squares = 0.0, count = 0.0;
         for (const auto& run : runs)
             for (const Window& one : run) {
-                const double error = one.seen[k] - robot.share[k].dot(terms(one, k));
+                const double error = robot.error(one, k);
                 squares += error * error * weight_of(error, robot.sd[k]);
                 ++count;
             }

@@ -37,7 +37,6 @@ CountedPath path_of(const Run& run) {
             way = path.way.back() + (x[i] - x[last]) * std::cos(middle) + (y[i] - y[last]) * std::sin(middle);
             heading = path.heading.back() + turn;
         }
-        path.row.push_back(i);
         path.time.push_back(time[i]);
         path.when.push_back(run.counted_at.empty() ? time[i] : run.counted_at[i]);
         path.way.push_back(way);

@@ -3,7 +3,6 @@
 
 #include "gap/data/experiment.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace puckloop::gap {
@@ -14,9 +13,9 @@ struct CountedPath {
         double steps, rate;  ///< rate: steps/s
     };
 
-    std::vector<std::size_t> row;            ///< of the run: those with a whole pose
-    std::vector<double> time, way, heading;  ///< of the tracker in these rows: s, m and rad summed
-    std::vector<double> when;          ///< s: where they stand on the counters' clock, as far as is known
+    std::vector<double> time, way,
+        heading;                       ///< of the tracker in rows with a whole pose: s, m and rad summed
+    std::vector<double> when;          ///< s: where these stand on the counters' clock, as far as is known
     std::vector<double> counted_time;  ///< s
     std::vector<double> left, right;   ///< steps
 

@@ -1,11 +1,9 @@
-#include "gap/validate/check.h"
+#include "gap/validate/checks.h"
 
-#include "gap/clean/copies.h"
-#include "gap/clean/fill_missing.h"
+#include "gap/clean/clean.h"
 #include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/data/problems.h"
-#include "gap/validate/checks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,11 +24,6 @@ constexpr std::size_t kRunRows = 10;  // a run this long whose measurement never
 constexpr double kLongestGap = 1e7;   // s
 constexpr double kManyClipped = 0.5, kMostClipped = 0.95;
 
-/// " counts", "" for pure numbers.
-std::string unit_text(const ColumnInfo& info) {
-    return std::string_view(info.unit) == "1" ? "" : fmt::format(" {}", info.unit);
-}
-
 /// Values that this quantity cannot have in its unit: a wrong unit or a swapped column. A few are glitches
 /// and count as missing.
 void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
@@ -40,13 +33,13 @@ void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
     if (outside == 0) return;
     const auto present = values.size() - count_missing(values);
     const auto first = std::ranges::find_if(values, impossible) - values.begin();
-    const std::string value =
-        fmt::format("{} = {:.6g}{}", info.name, values[static_cast<std::size_t>(first)], unit_text(info));
+    const std::string value = fmt::format("{} = {:.6g}{}", info.name, values[static_cast<std::size_t>(first)],
+                                          unit_suffix(info.unit));
     if (static_cast<double>(outside) >= kFewOutside * static_cast<double>(present))
         refuse(experiment, run,
                fmt::format("{} is impossible: wrong unit or swapped columns ({} of {} rows)", value, outside,
                            present),
-               fmt::format("{:g} to {:g}{}", info.low, info.high, unit_text(info)), first);
+               fmt::format("{:g} to {:g}{}", info.low, info.high, unit_suffix(info.unit)), first);
     experiment.caution("{}: {} in row {} is impossible ({} of {} rows): taken as missing", run.file, value,
                        first + 1, outside, present);
     std::ranges::replace_if(values, impossible, std::nan(""));
@@ -163,7 +156,7 @@ void check_constant(Experiment& experiment, const ColumnInfo& info) {
                "a measurement that changes");
     if (info.role != Role::Covariate)
         experiment.caution("{} is {:g}{} in every row: nothing can be learnt about what depends on it",
-                           info.name, low, unit_text(info));
+                           info.name, low, unit_suffix(info.unit));
 }
 
 /// A measurement that never changes inside one run while it does in others: a sensor that hung.
@@ -174,7 +167,7 @@ void check_hung(Experiment& experiment, const ColumnInfo& info) {
         if (run.rows < kRunRows || values.empty()) continue;
         if (std::ranges::any_of(values, [&](double value) { return value != values.front(); })) continue;
         experiment.caution("{}: {} is {:g}{} in every row of this run: did it hang?", run.file, info.name,
-                           values.front(), unit_text(info));
+                           values.front(), unit_suffix(info.unit));
     }
 }
 

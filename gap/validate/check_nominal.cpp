@@ -1,4 +1,6 @@
 #include "gap/validate/checks.h"
+
+#include "gap/data/columns.h"
 #include "physics/description/parameters.h"
 
 #include <fmt/format.h>
@@ -50,10 +52,9 @@ void check_nominal(Experiment& experiment) {
         const double most = kFarOff * std::max(std::abs(info->min), std::abs(info->max));
         const bool small = info->min > 0 && value * kFarOff < info->min;
         if (std::abs(value) <= most && !small) continue;
-        const std::string unit = info->unit == std::string_view("1") ? "" : fmt::format(" {}", info->unit);
         experiment.caution("[nominal] {} = {:g}{} is far from {:g} to {:g}, which the "
                            "simulator's robot can have: is the unit right?",
-                           name, value, unit, info->min, info->max);
+                           name, value, unit_suffix(info->unit), info->min, info->max);
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// The parts of check(): each throws InputError for what cannot be used, or adds cautions.
+// Is this data what it says it is? Looked at before anything is fitted: what cannot be used throws
+// InputError, what can be used with care becomes a caution.
 
 #include "base/error.h"
 #include "gap/data/experiment.h"
@@ -13,6 +14,10 @@
 #include <vector>
 
 namespace puckloop::gap {
+
+/// All checks. May drop rows that no analysis can use (all truth missing), with a caution.
+/// Where `problems` are gathered, every check is made; those that need sound columns only where all are.
+void check(Experiment& experiment, Problems* problems = nullptr);
 
 /// Throws InputError, which names the run's file and, where `row` (from 0) is told, the row.
 [[noreturn]] inline void refuse(const Experiment& experiment, const Run& run, const std::string& problem,

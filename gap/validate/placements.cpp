@@ -1,5 +1,6 @@
 #include "gap/validate/placements.h"
 
+#include "gap/data/columns.h"
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/profile.h"
@@ -22,7 +23,7 @@ constexpr double kClearly = 3.0;      // times what the repeats' scatter makes o
 
 std::string with_unit(double value, const std::string& unit) {
     if (unit == "rad") return stats::plain(value * kDegrees) + " deg";
-    return stats::plain(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+    return stats::plain(value) + unit_suffix(unit);
 }
 
 /// Rows in sequence with the same stimulus in one run.

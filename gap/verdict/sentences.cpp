@@ -1,5 +1,8 @@
 #include "gap/verdict/sentences.h"
 
+#include "gap/data/columns.h"
+#include "gap/stats/profile.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,17 +23,6 @@ std::string listed(const std::vector<std::string>& words, const char* last) {
     return text;
 }
 
-/// Digits beyond the usual ones that a narrow interval takes: its ends and middle read differently.
-int digits_to_tell(const FittedParameter& p) {
-    constexpr int kMost = 4;
-    int more = 0;
-    const auto read = [&](double value) { return quantity(value, p.unit, more); };
-    const double middle = (p.low + p.high) / 2;
-    while (more < kMost && p.low < p.high && (read(p.low) == read(middle) || read(middle) == read(p.high)))
-        ++more;
-    return more;
-}
-
 }  // namespace
 
 std::string quantity(double value, const std::string& unit, int more_digits) {
@@ -40,8 +32,7 @@ std::string quantity(double value, const std::string& unit, int more_digits) {
     if (unit == "s" && size < 1) return fmt::format("{:.{}g} ms", value * 1e3, four);
     if (unit == "rad" && size < 7) return fmt::format("{:.{}g} deg", value * kDegree, three);
     if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.{}g} %", value * 100, three);
-    return unit == "1" || unit.empty() ? fmt::format("{:.{}g}", value, four)
-                                       : fmt::format("{:.{}g} {}", value, four, unit);
+    return fmt::format("{:.{}g}{}", value, four, unit_suffix(unit));
 }
 
 std::string cause_sentence(const Cause& cause) {
@@ -49,7 +40,9 @@ std::string cause_sentence(const Cause& cause) {
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     std::vector<std::string> figures;
     for (const FittedParameter& p : cause.parameters) {
-        const int more = digits_to_tell(p);
+        const int more =
+            stats::more_digits(p.low, (p.low + p.high) / 2, p.high,
+                               [&](double value, int digits) { return quantity(value, p.unit, digits); });
         figures.push_back(fmt::format("{} = {} ({} to {})", p.name, quantity(p.value, p.unit, more),
                                       quantity(p.low, p.unit, more), quantity(p.high, p.unit, more)));
     }

@@ -160,7 +160,6 @@ struct Verdict {
     std::vector<PredictiveCheck>
         predictive;              ///< each observable as it is, then with the causes; in gap.json p only
     std::vector<Series> series;  ///< not in gap.json
-    double wall_s = 0.0;         ///< not in gap.json
 };
 
 /// gap.json as text. Same verdict, same bytes.

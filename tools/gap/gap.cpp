@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "emu/image/image.h"
 #include "gap/begin/expected_time.h"
+#include "gap/data/columns.h"
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/report/report.h"
@@ -114,7 +115,7 @@ void run_again(const Request& request, const gap::Experiment& experiment, gap::V
         fmt::print("run again with the overlay ({} of {} runs or placements): {}, error {:.4g}{} before, "
                    "{:.4g} after\n",
                    verdict.rerun.runs, verdict.rerun.of_runs, one.name, one.before,
-                   one.unit == "1" ? "" : " " + one.unit, one.after);
+                   gap::unit_suffix(one.unit), one.after);
     if (const auto caution = verdict.rerun.caution(); !caution.empty()) fmt::print("  {}\n", caution);
 }
 
@@ -145,8 +146,8 @@ void analyse_folder(const Request& request) {
     gap::Options options{request.seed, threads, progress_line(gap::expected_seconds(experiment, threads))};
     const auto begun = std::chrono::steady_clock::now();
     gap::Verdict verdict = gap::analyse(experiment, options);
-    verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    log::info("analysed in {:.2f} s: {}", verdict.wall_s, gap::decision_name(verdict.decision));
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    log::info("analysed in {:.2f} s: {}", took.count(), gap::decision_name(verdict.decision));
     if (::isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
     tell_experiment(experiment);
     tell_verdict(experiment, verdict);

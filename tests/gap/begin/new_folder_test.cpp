@@ -24,7 +24,7 @@ TEST_CASE("a new folder of every kind lacks nothing but rows") {
         write_new_folder(kind, 3, folder.path() / "fresh");
         const Readiness ready = readiness_of(folder.path() / "fresh", 1);
         INFO(readiness_text(ready));
-        CHECK(ready.kind == kind_name(kind));
+        CHECK(ready.experiment->kind == kind);
         REQUIRE(ready.problems.size() == 3);
         for (const std::string& problem : ready.problems)
             CHECK_THAT(problem, Contains("has no rows"));
@@ -57,7 +57,7 @@ TEST_CASE("a folder that was begun and filled is read like one written by hand")
         const Readiness ready = readiness_of(fresh, 1);
         INFO(readiness_text(ready));
         CHECK(ready.problems.empty());
-        CHECK(ready.rows == readiness_of(by_hand.path(), 1).rows);
+        CHECK(ready.experiment->rows() == readiness_of(by_hand.path(), 1).experiment->rows());
     }
 }
 

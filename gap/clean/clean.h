@@ -1,7 +1,8 @@
 #pragma once
-// Cells missing in columns that the models predict from. A model would take what it takes where there is no
-// such column at all (0 bytes on the line, 0 rad of incidence), and the jumps to and fro would look like an
-// effect.
+// What is put right or left out before anything is fitted, each with a caution: rows that were pasted, not
+// measured, and cells missing in columns that the models predict from. A model would take what it takes where
+// there is no such column at all (0 bytes on the line, 0 rad of incidence), and the jumps to and fro would
+// look like an effect.
 
 #include "gap/data/experiment.h"
 
@@ -11,6 +12,11 @@
 #include <vector>
 
 namespace puckloop::gap {
+
+/// Finds copies among the runs' observables (their truth, where a kind has no observable column), takes the
+/// later one out and says so as a caution. In kinds that are time series (motion, accelerometer, timing) only
+/// whole runs are taken out: two runs may well begin alike.
+void drop_copies(Experiment& experiment);
 
 /// In each run: a column with one value only is filled with it, other covariates are drawn on between their
 /// neighbours (temperature, battery, time) or held; where a truth or stimulus that varies is missing, what
