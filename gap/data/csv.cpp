@@ -182,7 +182,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (!whole) cells.assign(table.names.size(), {});  // the rows behind it keep their numbers
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
-            commas[i].take(cells[i]);
+            if (separator != ',') commas[i].take(cells[i]);
             const bool sound = attempt(problems, [&] {
                 if (!parse(cells[i], separator == ',', decimal, value))
                     throw InputError(file.string(), place,

@@ -141,14 +141,21 @@ std::string plain_name(std::string name) {
 
 }  // namespace
 
+const std::vector<double>& simulated(const Series& series, Stage stage) {
+    return stage == Stage::Before ? series.before : series.after;
+}
+
+std::vector<double> left_over(const Series& series, Stage stage) {
+    const std::vector<double>& shown = simulated(series, stage);
+    std::vector<double> rest(series.measured.size(), kNan);
+    for (std::size_t i = 0; i < rest.size() && i < shown.size(); ++i)
+        rest[i] = series.measured[i] - shown[i];
+    return rest;
+}
+
 std::vector<double> residual_of(const Series& series, Stage stage) {
     const auto& innovation = stage == Stage::Before ? series.innovation_before : series.innovation_after;
-    if (innovation.size() == series.measured.size()) return innovation;
-    const auto& simulated = stage == Stage::Before ? series.before : series.after;
-    std::vector<double> residual(series.measured.size(), kNan);
-    for (std::size_t i = 0; i < residual.size() && i < simulated.size(); ++i)
-        residual[i] = series.measured[i] - simulated[i];
-    return residual;
+    return innovation.size() == series.measured.size() ? innovation : left_over(series, stage);
 }
 
 std::vector<Covariate> covariates_of(const Experiment& experiment, const Series& series) {
@@ -182,7 +189,7 @@ std::vector<stats::Finding> residual_structure(const Experiment& experiment, con
     input.residual.value = residual_of(series, stage);
     input.residual.run.assign(series.run.begin(), series.run.end());
     input.time = times_of(experiment, series);
-    input.level = stage == Stage::Before ? series.before : series.after;
+    input.level = simulated(series, stage);
     // Of a reading at an end of the instrument only the middle of what it may be is known: it scatters less.
     if (const auto ends = experiment.instruments.find(series.observable);
         ends != experiment.instruments.end())

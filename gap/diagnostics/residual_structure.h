@@ -11,8 +11,13 @@ namespace puckloop::gap {
 
 enum class Stage { Before, After };  ///< of the simulator as it is, or with the chosen effects
 
-/// The residual that is looked at: standardised innovations where the series has them, else measured -
-/// simulated.
+/// What the simulator gives in each row at that stage.
+const std::vector<double>& simulated(const Series& series, Stage stage);
+/// Measured - simulated; NaN where nothing was simulated.
+std::vector<double> left_over(const Series& series, Stage stage);
+
+/// The residual that is looked at: standardised innovations where the series has them, else what is
+/// left over.
 std::vector<double> residual_of(const Series& series, Stage stage);
 
 /// A covariate a row of the series; only those that vary.

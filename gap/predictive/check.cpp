@@ -65,8 +65,8 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
     const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;
     const auto states = posterior_states(model, fit.freed, mode, count, random);
     // values[o][k]: of observable o the curves of replicate k.
-    std::vector<std::vector<std::vector<std::vector<double>>>> values(
-        observables.size(), std::vector<std::vector<std::vector<double>>>(count));
+    using Curves = std::vector<std::vector<double>>;
+    std::vector<std::vector<Curves>> values(observables.size(), std::vector<Curves>(count));
     in_parallel(count, study.threads(), [&](std::size_t k) {
         RandomStream own(seed, fmt::format("gap/replicate {} {}", extended, k));
         Prediction drawn;

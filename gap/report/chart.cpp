@@ -37,6 +37,11 @@ std::string dot(double x, double y, const std::string& colour, const char* radiu
                        more);
 }
 
+/// From the first to the last whole step inside.
+Scale whole_steps(const Scale& s) {
+    return {std::ceil(s.low / s.step - 1e-9) * s.step, std::floor(s.high / s.step + 1e-9) * s.step, s.step};
+}
+
 }  // namespace
 
 Scale Scale::covering(double low, double high, int wanted) {
@@ -85,33 +90,6 @@ void Chart::points(const std::vector<double>& x, const std::vector<double>& y, c
     layers_.push_back(std::move(layer));
 }
 
-void Chart::line(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour,
-                 const std::string& name, bool dashed) {
-    layers_.push_back({Layer::Kind::Line, x, y, {}, colour, name, dashed});
-}
-
-void Chart::band(const std::vector<double>& x, const std::vector<double>& low,
-                 const std::vector<double>& high, const std::string& colour) {
-    layers_.push_back({Layer::Kind::Band, x, low, high, colour, "", false});
-}
-
-void Chart::dots(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour) {
-    layers_.push_back({Layer::Kind::Dots, x, y, {}, colour, "", false});
-}
-
-void Chart::bars(const std::vector<double>& x, double half, const std::vector<double>& low,
-                 const std::vector<double>& high, const std::string& colour) {
-    layers_.push_back({Layer::Kind::Bars, x, low, high, colour, "", false, half});
-}
-
-void Chart::interval(double x, double y, double low, double high, const std::string& colour) {
-    layers_.push_back({Layer::Kind::Interval, {x, x}, {low, y}, {high, y}, colour, "", false});
-}
-
-void Chart::level(double y, const std::string& name) {
-    layers_.push_back({Layer::Kind::Level, {}, {y}, {}, "#888888", name, true});
-}
-
 Scale Chart::scale_of(bool vertical, int wanted) const {
     std::vector<double> values, dots;
     for (const Layer& layer : layers_) {
@@ -152,20 +130,14 @@ std::string Chart::svg(double width, double height) const {
     // Labels stay apart in small charts, too.
     Scale xs = scale_of(false, width < kSmall ? 3 : 4), ys = scale_of(true, width < kSmall ? 4 : 5);
     const double bottom = height - kBottom, right = width - kRight;
-    if (equal_) {  // widen the shorter axis about its middle
+    // Equal axes: the shorter one is widened about its middle, to whole steps; then both to the same unit.
+    for (const bool to_steps : equal_ ? std::vector{true, false} : std::vector<bool>{}) {
         const double unit =
             std::max((xs.high - xs.low) / (right - kLeft), (ys.high - ys.low) / (bottom - kTop));
         for (auto [scale, pixels] : {std::pair{&xs, right - kLeft}, {&ys, bottom - kTop}}) {
             const double middle = (scale->low + scale->high) / 2, half = unit * pixels / 2;
-            *scale = {std::ceil((middle - half) / scale->step - 1e-9) * scale->step,
-                      std::floor((middle + half) / scale->step + 1e-9) * scale->step, scale->step};
-        }
-        const double finest =
-            std::max((xs.high - xs.low) / (right - kLeft), (ys.high - ys.low) / (bottom - kTop));
-        for (auto [scale, pixels] : {std::pair{&xs, right - kLeft}, {&ys, bottom - kTop}}) {
-            const double middle = (scale->low + scale->high) / 2;
-            scale->low = middle - finest * pixels / 2;
-            scale->high = middle + finest * pixels / 2;
+            const Scale wide{middle - half, middle + half, scale->step};
+            *scale = to_steps ? whole_steps(wide) : wide;
         }
     }
     const auto px = [&](double x) { return kLeft + (x - xs.low) / (xs.high - xs.low) * (right - kLeft); };
@@ -180,17 +152,13 @@ std::string Chart::svg(double width, double height) const {
         return all;
     };
     std::string out;
-    const auto first_tick = [](const Scale& s) {
-        return Scale{std::ceil(s.low / s.step - 1e-9) * s.step, std::floor(s.high / s.step + 1e-9) * s.step,
-                     s.step};
-    };
     std::string grid;
-    for (const double tick : first_tick(ys).ticks()) {
+    for (const double tick : whole_steps(ys).ticks()) {
         grid += fmt::format("M{:.1f} {:.1f}H{:.1f}", kLeft, py(tick), right);
         out += text_at(kLeft - 5, py(tick) + 3.5, ys.label(tick), "end");
     }
     if (categories_.empty())
-        for (const double tick : first_tick(xs).ticks()) {
+        for (const double tick : whole_steps(xs).ticks()) {
             grid += fmt::format("M{:.1f} {:.1f}V{:.1f}", px(tick), kTop, bottom);
             // Long labels stand at every second tick.
             const bool crowded =

@@ -26,18 +26,30 @@ class Chart {
     void points(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour,
                 const std::string& name);
     void line(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour,
-              const std::string& name, bool dashed = false);
+              const std::string& name, bool dashed = false) {
+        layers_.push_back({Layer::Kind::Line, x, y, {}, colour, name, dashed});
+    }
     void band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
-              const std::string& colour);
+              const std::string& colour) {
+        layers_.push_back({Layer::Kind::Band, x, low, high, colour});
+    }
     /// Every point, larger than points() draws them.
-    void dots(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour);
+    void dots(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour) {
+        layers_.push_back({Layer::Kind::Dots, x, y, {}, colour});
+    }
     /// A wide bar round each x from low to high, `half` to either side.
     void bars(const std::vector<double>& x, double half, const std::vector<double>& low,
-              const std::vector<double>& high, const std::string& colour);
+              const std::vector<double>& high, const std::string& colour) {
+        layers_.push_back({Layer::Kind::Bars, x, low, high, colour, "", false, half});
+    }
     /// A vertical bar from low to high at x, with a dot at y.
-    void interval(double x, double y, double low, double high, const std::string& colour);
+    void interval(double x, double y, double low, double high, const std::string& colour) {
+        layers_.push_back({Layer::Kind::Interval, {x, x}, {low, y}, {high, y}, colour});
+    }
     /// A grey line at y across the chart, and a reason for the y axis to reach there.
-    void level(double y, const std::string& name = {});
+    void level(double y, const std::string& name = {}) {
+        layers_.push_back({Layer::Kind::Level, {}, {y}, {}, "#888888", name, true});
+    }
     /// Texts instead of numbers at x = 0, 1, 2, ...
     void categories(std::vector<std::string> names) { categories_ = std::move(names); }
     /// The same length on both axes.
@@ -53,7 +65,7 @@ class Chart {
     struct Layer {
         enum class Kind { Points, Dots, Line, Band, Bars, Interval, Level } kind;
         std::vector<double> x, y, high;  // y is the low side of a band
-        std::string colour, name;
+        std::string colour, name{};
         bool dashed = false;
         double half = 0.0;  // of bars
     };

@@ -26,20 +26,11 @@ using stats::Covariate;
 
 /// How the simulator is drawn, as it is and with the causes.
 struct Shown {
-    std::vector<double> Series::*values;
+    Stage stage;
     const char *colour, *name;
     bool dashed;
 };
-constexpr Shown kShown[] = {{&Series::before, kBefore, "before", true},
-                            {&Series::after, kAfter, "after", false}};
-
-std::vector<double> left_over(const Series& series, const Shown& shown) {
-    const std::vector<double>& simulated = series.*shown.values;
-    std::vector<double> rest(series.measured.size(), NAN);
-    for (std::size_t i = 0; i < rest.size() && i < simulated.size(); ++i)
-        rest[i] = series.measured[i] - simulated[i];
-    return rest;
-}
+constexpr Shown kShown[] = {{Stage::Before, kBefore, "before", true}, {Stage::After, kAfter, "after", false}};
 
 std::string left_over_label(const Series& series) {
     return with_unit(fmt::format("{}, measured − simulated", series.observable), series.unit);
@@ -53,9 +44,9 @@ Picture measured_and_simulated(const Series& series, const Covariate& c) {
     Chart chart("Measured and simulated", covariate_label(c.name), with_unit(series.observable, series.unit));
     chart.clip(0.002, 0.998);
     chart.points(c.value, series.measured, kMeasured, "measured");
-    for (const auto& [values, colour, name, dashed] : kShown) {
+    for (const auto& [stage, colour, name, dashed] : kShown) {
         const stats::Band means =
-            stats::bootstrap_band(by_run(series, series.*values), c.value, kBins, kCoverage, {});
+            stats::bootstrap_band(by_run(series, simulated(series, stage)), c.value, kBins, kCoverage, {});
         chart.line(means.x, means.y, colour, name, dashed);
     }
     return {chart.svg(kWidth, kHeight),
@@ -85,8 +76,8 @@ Picture residuals(const Series& series, const Covariate& c, const char* title, s
     std::vector<std::string> names;
     const std::vector<double> x = groups ? as_places(c, names) : c.value;
     for (const Shown& shown : kShown) {
-        const stats::Band band = stats::bootstrap_band(by_run(series, left_over(series, shown)), x, kBins,
-                                                       kCoverage, {.seed = seed, .permutations = 0});
+        const stats::Band band = stats::bootstrap_band(by_run(series, left_over(series, shown.stage)), x,
+                                                       kBins, kCoverage, {.seed = seed, .permutations = 0});
         for (std::size_t i = 0; groups && i < band.x.size(); ++i)
             chart.interval(band.x[i] + (shown.dashed ? -0.1 : 0.1), band.y[i], band.low[i], band.high[i],
                            shown.colour);
@@ -116,7 +107,7 @@ Picture by_run_picture(const Experiment& experiment, const Series& series) {
     for (std::size_t r = 0; r < experiment.runs.size(); ++r)
         names.push_back(few || r % ((experiment.runs.size() + 11) / 12) == 0 ? std::to_string(r + 1) : "");
     for (const Shown& shown : kShown) {
-        const std::vector<double> rest = left_over(series, shown);
+        const std::vector<double> rest = left_over(series, shown.stage);
         for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
             const std::vector<double> inside = of_run(series, rest, static_cast<std::uint32_t>(r));
             const double middle = stats::median(inside);
@@ -217,14 +208,15 @@ std::vector<Picture> path_pictures(const Experiment& experiment, const Verdict& 
         }
         chart.line(x, y, kMeasured, "measured");
         for (const auto& [stage, colour, name, dashed] : kShown) {
-            const auto a = of_run(*along, along->*stage, number), b = of_run(*across, across->*stage, number);
+            const auto a = of_run(*along, simulated(*along, stage), number),
+                       b = of_run(*across, simulated(*across, stage), number);
             Track track{a, b};  // from where the run began
             if (room) {
                 std::ranges::for_each(track.x, [&](double& one) { one += x.front(); });
                 std::ranges::for_each(track.y, [&](double& one) { one += y.front(); });
             } else {
-                track = integrated(a, b, of_run(*heading, heading->*stage, number), x.front(), y.front(),
-                                   run.column("theta_rad")[first]);
+                track = integrated(a, b, of_run(*heading, simulated(*heading, stage), number), x.front(),
+                                   y.front(), run.column("theta_rad")[first]);
             }
             chart.line(track.x, track.y, colour, name, dashed);
         }

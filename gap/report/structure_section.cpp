@@ -21,13 +21,10 @@ constexpr std::size_t kMostLines = 14;  // an observable
 
 using stats::Finding;
 
-double rms_of(const std::vector<double>& measured, const std::vector<double>& simulated) {
-    double sum = 0, rows = 0;
-    for (std::size_t i = 0; i < measured.size() && i < simulated.size(); ++i) {
-        const double rest = measured[i] - simulated[i];
-        if (std::isfinite(rest)) sum += rest * rest, rows += 1;
-    }
-    return rows > 0 ? std::sqrt(sum / rows) : NAN;
+double rms_of(std::vector<double> values) {
+    for (double& value : values)
+        value *= value;
+    return std::sqrt(stats::mean(values));
 }
 
 void add_floor(const Experiment& experiment, const Series& series, Table& table) {
@@ -41,7 +38,8 @@ void add_floor(const Experiment& experiment, const Series& series, Table& table)
                                 : stats::noise_floor(measured, stats::stimulus_numbers(stimuli));
     table.row({plain_observable(series.observable), series.unit, cell(floor.within_run),
                cell(floor.between_runs), cell(floor.differences),
-               cell(rms_of(series.measured, series.before)), cell(rms_of(series.measured, series.after))});
+               cell(rms_of(left_over(series, Stage::Before))),
+               cell(rms_of(left_over(series, Stage::After)))});
 }
 
 std::string effect_of(const Finding& f) {

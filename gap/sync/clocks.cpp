@@ -96,11 +96,11 @@ Robot robot_of(const std::vector<std::vector<Window>>& runs, const Robot& before
                 right += weight * x * one.seen[k];
             }
         robot.share[k] = normal.completeOrthogonalDecomposition().solve(right);
-        std::vector<double> sizes;
+        std::vector<double> errors;
         for (const auto& run : runs)
             for (const Window& one : run)
-                sizes.push_back(std::abs(robot.error(one, k)));
-        robot.sd[k] = robust_sd(std::move(sizes));
+                errors.push_back(robot.error(one, k));
+        robot.sd[k] = robust_sd(std::move(errors));
     }
     return robot;
 }

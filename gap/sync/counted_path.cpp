@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -69,8 +70,10 @@ std::vector<CountedPath> counted_paths(const Experiment& experiment) {
     return paths;
 }
 
-double robust_sd(const std::vector<double>& sizes) {
-    return sizes.empty() ? 1.0 : std::max(stats::kMadToSigma * stats::upper_median(sizes), 1e-9);
+double robust_sd(std::vector<double> errors) {
+    for (double& error : errors)
+        error = std::abs(error);
+    return errors.empty() ? 1.0 : std::max(stats::kMadToSigma * stats::upper_median(std::move(errors)), 1e-9);
 }
 
 }  // namespace puckloop::gap

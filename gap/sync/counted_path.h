@@ -31,7 +31,8 @@ struct CountedPath {
 /// One for each run of a motion experiment; empty where a run has no counters or too few rows (60).
 std::vector<CountedPath> counted_paths(const Experiment& experiment);
 
-/// Standard deviation from the middle of errors' sizes: pushes and lost sight do not count. At least 1e-9.
-double robust_sd(const std::vector<double>& sizes);
+/// Standard deviation from the middle of the errors' sizes: pushes and lost sight do not count. At least
+/// 1e-9.
+double robust_sd(std::vector<double> errors);
 
 }  // namespace puckloop::gap

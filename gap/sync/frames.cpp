@@ -103,10 +103,7 @@ Disagreement::Sum unexplained(const std::vector<double>& seen, const Eigen::Matr
     const Eigen::Map<const Eigen::VectorXd> target(seen.data(), static_cast<Eigen::Index>(seen.size()));
     const Eigen::Vector3d share = terms.completeOrthogonalDecomposition().solve(target);
     const Eigen::VectorXd rest = target - terms * share;
-    std::vector<double> sizes;
-    for (Eigen::Index i = 1; i < rest.size(); ++i)
-        sizes.push_back(std::abs(rest[i]));
-    const double sd = robust_sd(std::move(sizes));
+    const double sd = robust_sd({rest.begin() + 1, rest.end()});
     Disagreement::Sum sum;
     sum.rate = std::move(rate);
     for (double& one : sum.rate)
