@@ -110,6 +110,9 @@ void read_columns(const TomlValue& table, Kind kind, Frame& frame) {
         if (value.is_string()) {
             unit = std::get<std::string>(value.data);
         } else {
+            if (!value.is_table())
+                fail_at(frame.file, value.line, fmt::format("column {} is neither unit nor table", name),
+                        "\"mm\", say, or { from = \"name in the file\", unit = \"mm\" }");
             Reader entry(frame.file, "column " + name, value);
             from = entry.text("from", name);
             unit = entry.text("unit", info.unit);
@@ -127,6 +130,9 @@ void read_instruments(const TomlValue& table, Experiment& experiment, const std:
     Reader reader(file, "instrument", table);
     for (const auto& [name, value] : reader.everything()) {
         known_column(reader, experiment.kind, name);
+        if (!value.is_table())
+            fail_at(file, value.line, fmt::format("instrument {} is not a table", name),
+                    "{ floor = 0, ceiling = 4095, quantum = 1 }, or some of these");
         Reader entry(file, "instrument " + name, value);
         Instrument instrument{entry.quantity("floor", Dimension::Number, kNone),
                               entry.quantity("ceiling", Dimension::Number, kNone),

@@ -193,9 +193,10 @@ void check_runs(Experiment& experiment) {
 /// A file by any of its names: "./run1.csv", a link.
 void check_files(const Experiment& experiment) {
     std::map<std::filesystem::path, std::string> files;
-    std::error_code ignored;
+    std::error_code failed;
     for (const Run& run : experiment.runs) {
-        const auto path = std::filesystem::weakly_canonical(experiment.folder / run.file, ignored);
+        auto path = std::filesystem::canonical(experiment.folder / run.file, failed);
+        if (failed) path = experiment.folder / run.file;
         const auto [first, fresh] = files.emplace(path, run.file);
         if (fresh) continue;
         const std::string names = first->second == run.file

@@ -183,6 +183,10 @@ TEST_CASE("descriptions that cannot be used are refused with a line") {
     CHECK_THAT(
         of_toml("kind = \"ground\"\n[[run]]\nfile = \"\"\n"),
         Contains("line 3: run 1: file names nothing (expected a CSV file of the experiment's folder)"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngrey = 3\n" + run),
+               Contains("line 3: column grey is neither unit nor table") && Contains("{ from ="));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[instrument]\nreading = 3\n" + run),
+               Contains("line 3: instrument reading is not a table (expected { floor = 0,"));
     for (const char* key : {"session", "unit"})
         CHECK_THAT(
             of_toml("kind = \"ground\"\n" + run + key + " = [1]\n"),
