@@ -72,6 +72,11 @@ WrittenColumn& WrittenRun::column(std::string_view wanted, std::string_view unit
     return columns.back();
 }
 
+void WrittenRun::row(std::initializer_list<std::pair<const char*, double>> cells) {
+    for (const auto& [column_name, value] : cells)
+        column(column_name, "").values.push_back(value);
+}
+
 const WrittenColumn* WrittenRun::find(std::string_view wanted) const {
     for (const WrittenColumn& known : columns)
         if (known.name == wanted) return &known;

@@ -3,9 +3,11 @@
 // the generators of hidden effects fill in. Nothing here is shared with the reader.
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap {
@@ -24,6 +26,8 @@ struct WrittenRun {
     std::vector<WrittenColumn> columns{};
 
     WrittenColumn& column(std::string_view name, std::string_view unit = "1");  ///< made when absent
+    /// One more value in each of these columns, in canonical units.
+    void row(std::initializer_list<std::pair<const char*, double>> cells);
     const WrittenColumn* find(std::string_view name) const;
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 };

@@ -35,12 +35,10 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.instruments.push_back({"strength", NAN, 4095, 0.0});
     WrittenRun run;
     run.name = "strength_by_distance";
-    std::vector<double> distance, strength;
-    for (std::size_t i = 0; i < table[0].size(); ++i) {
-        distance.push_back(table[0][i] / 100);
-        strength.push_back(std::exp(table[1][i]));
-    }
-    run.columns = {{"distance_m", distance}, {"strength", strength}, {"sigma_ln", table[2]}};
+    for (std::size_t i = 0; i < table[0].size(); ++i)
+        run.row({{"distance_m", table[0][i] / 100},
+                 {"strength", std::exp(table[1][i])},
+                 {"sigma_ln", table[2][i]}});
     e.runs.push_back(run);
     return {e};
 }

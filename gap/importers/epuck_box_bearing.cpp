@@ -62,15 +62,13 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         WrittenRun run;
         run.name = fmt::format("ps{}", s);
         run.constants["sensor"] = static_cast<double>(s);
-        std::vector<double> distance, angle, order;
-        for (const double turn : table[0]) {
-            const auto [d, a] = seen(simulator, s, std::numbers::pi + turn * kDegree);
-            distance.push_back(d);
-            angle.push_back(a);
-            order.push_back(static_cast<double>(order.size()));
+        for (std::size_t i = 0; i < table[0].size(); ++i) {
+            const auto [distance, angle] = seen(simulator, s, std::numbers::pi + table[0][i] * kDegree);
+            run.row({{"order", static_cast<double>(i)},
+                     {"distance_m", distance},
+                     {"angle_rad", angle},
+                     {"reading", table[s + 1][i]}});
         }
-        run.columns = {
-            {"order", order}, {"distance_m", distance}, {"angle_rad", angle}, {"reading", table[s + 1]}};
         e.runs.push_back(run);
     }
     return {e};

@@ -41,25 +41,19 @@ double coordinate(const std::filesystem::path& file, char letter) {
 WrittenRun read_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
     const double x = coordinate(file, 'X'), y = coordinate(file, 'Y');
     const auto table = read_numbers(file, ',', beacons[0].size());
-    std::vector<double> emitter, order, distance, truth, bearing;
-    for (std::size_t b = 0; b < table.size(); ++b) {
-        const double dx = beacons[0][b] - x, dy = beacons[1][b] - y;
-        for (std::size_t i = 0; i < table[b].size(); ++i) {
-            emitter.push_back(static_cast<double>(b + 1));
-            order.push_back(static_cast<double>(i));
-            distance.push_back(std::hypot(dx, dy));
-            truth.push_back(std::remainder(std::atan2(dy, dx) - kHeading, 2 * std::numbers::pi));
-            bearing.push_back(table[b][i] * kDegree);
-        }
-    }
     WrittenRun run;
     run.name = fmt::format("x{}_y{}", x, y);
     run.conditions = {{"x_m", fmt::format("{}", x)}, {"y_m", fmt::format("{}", y)}};
-    run.columns = {{"emitter", emitter},
-                   {"order", order},
-                   {"distance_m", distance},
-                   {"true_bearing_rad", truth},
-                   {"bearing_rad", bearing}};
+    for (std::size_t b = 0; b < table.size(); ++b) {
+        const double dx = beacons[0][b] - x, dy = beacons[1][b] - y;
+        const double truth = std::remainder(std::atan2(dy, dx) - kHeading, 2 * std::numbers::pi);
+        for (std::size_t i = 0; i < table[b].size(); ++i)
+            run.row({{"emitter", static_cast<double>(b + 1)},
+                     {"order", static_cast<double>(i)},
+                     {"distance_m", std::hypot(dx, dy)},
+                     {"true_bearing_rad", truth},
+                     {"bearing_rad", table[b][i] * kDegree}});
+    }
     return run;
 }
 

@@ -67,17 +67,14 @@ WrittenRun proximity_run(const std::filesystem::path& file) {
     run.constants["ambient"] = light ? 1 : 0;
     run.constants["sensor"] = number_in(file, {0, {name.substr(digits, 2)}}, 0);
     run.conditions["light"] = light ? "light" : "dark";
-    std::vector<double> distance, reading, order;
     for (const TextRow& row : read_rows(file, ',')) {
-        const double d = labelled_distance(file, row);
-        for (std::size_t i = 1; i < row.cells.size(); ++i) {
-            if (row.cells[i].empty()) continue;
-            reading.push_back(number_in(file, row, i));
-            distance.push_back(d);
-            order.push_back(static_cast<double>(order.size()));
-        }
+        const double distance = labelled_distance(file, row);
+        for (std::size_t i = 1; i < row.cells.size(); ++i)
+            if (!row.cells[i].empty())
+                run.row({{"order", static_cast<double>(run.rows())},
+                         {"distance_m", distance},
+                         {"reading", number_in(file, row, i)}});
     }
-    run.columns = {{"order", order}, {"distance_m", distance}, {"reading", reading}};
     return run;
 }
 
@@ -104,17 +101,14 @@ void read_ground(const std::filesystem::path& file, std::vector<WrittenRun>& run
             }
         run.conditions["surface"] = surface;
         if (!light.empty()) run.conditions["light"] = light;
-        std::vector<double> sensor, reading;
         for (const std::size_t side : {0, 1})
             for (std::size_t r = 2; r < rows.size(); ++r) {
                 if (c + side >= rows[r].cells.size() || rows[r].cells[c + side].empty()) continue;
                 const double value = number_in(file, rows[r], c + side);
                 if (value != 0 && std::fabs(value) < kSmallestReading) continue;
-                sensor.push_back(side == 0 ? 0 : 2);
-                reading.push_back(value);
+                run.row({{"sensor", side == 0 ? 0 : 2}, {"reading", value}});
             }
-        run.columns = {{"sensor", sensor}, {"reading", reading}};
-        if (!reading.empty()) runs.push_back(run);
+        if (run.rows() > 0) runs.push_back(run);
     }
 }
 

@@ -72,13 +72,12 @@ double usual_loop(std::vector<double> loops) {
 
 WrittenRun read_run(const std::filesystem::path& file) {
     const std::vector<double> loops = loops_of(file);
-    std::vector<double> arrival(loops.size()), seq(loops.size());
-    std::partial_sum(loops.begin(), loops.end(), arrival.begin());
-    std::iota(seq.begin(), seq.end(), 0.0);
     WrittenRun run;
     run.name = file.stem().string().substr(std::string("results_go_on_").size());
     run.constants["nominal_period"] = usual_loop(loops);
-    run.columns = {{"seq", seq}, {"t_host_s", arrival}};
+    double arrival = 0.0;
+    for (const double loop : loops)
+        run.row({{"seq", static_cast<double>(run.rows())}, {"t_host_s", arrival += loop}});
     return run;
 }
 
