@@ -88,7 +88,9 @@ void compare_line(const Experiment& experiment, const React& react, const std::v
 
 void compare_timing(const Run& run, const React& react, const std::vector<Row>& emulated,
                     std::vector<Comparison>& comparisons) {
+    constexpr double kPause = 0.05;  // s
     std::vector<double> differences;
+    std::size_t compared = 0;
     double seen_last = NAN, performed_last = NAN;
     for (const std::size_t row : react.rows) {
         const auto seq = static_cast<std::size_t>(value_of(run, "seq", row, static_cast<double>(row)));
@@ -100,7 +102,14 @@ void compare_timing(const Run& run, const React& react, const std::vector<Row>& 
             comparisons[2].measured(ok < 0.5 ? 1 : 0);
             comparisons[2].performed(is_whole ? 0 : 1);
         }
-        if (whole && is_whole) differences.push_back(seen - is);
+        if (whole && is_whole) {
+            // A loop that paused after broken frames, in either, counts its periods anew (gap/sync/pauses).
+            const bool anew = !differences.empty() && seq > compared + 1 &&
+                              std::abs(seen - is - differences.back()) > kPause;
+            if (anew) add_arrivals(std::exchange(differences, {}), comparisons[0]);
+            differences.push_back(seen - is);
+            compared = seq;
+        }
         // From one whole frame to the next: broken ones in a row make it long.
         if (whole) comparisons[1].measured(seen - std::exchange(seen_last, seen));
         if (is_whole) comparisons[1].performed(is - std::exchange(performed_last, is));
