@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace puckloop::gap {
 
@@ -35,8 +33,7 @@ Experiment half_of(const Experiment& whole, const std::vector<char>& second) {
 }
 
 double cost_in(const Study& study, const State& state, const std::vector<char>& second) {
-    Prediction prediction;
-    const auto costs = costs_at(study.model(), state, prediction);
+    const auto costs = costs_at(study.model(), state, study.model().predicted(state.values));
     double sum = 0.0;
     for (std::size_t o = 0; o < costs.size(); ++o)
         for (std::size_t i = 0; i < costs[o].cost.size(); ++i)
@@ -48,9 +45,9 @@ double cost_in(const Study& study, const State& state, const std::vector<char>& 
 bool takes(Experiment& half, const Study& study, const Fit& fit) {
     const auto model = make_model(half);
     for (const Freed& freed : fit.freed) {
-        const auto index = static_cast<std::size_t>(freed.index);
+        const auto index = freed.index;
         const ModelParameter& parameter = study.model().parameters()[index];
-        if (model->find(parameter.name) < 0) return false;
+        if (!model->find(parameter.name)) return false;
         half.nominal[parameter.name] = fit.fitted.state.values[index];
     }
     return true;
@@ -59,9 +56,8 @@ bool takes(Experiment& half, const Study& study, const Fit& fit) {
 bool same_means(const Study& study, const Fit& fit, const Experiment& half, MotionView view,
                 const std::vector<char>& second) {
     const auto model = make_model(half, view);
-    Prediction of_half, of_whole;
-    model->predict(model->neutral(), of_half);
-    study.model().predict(fit.fitted.state.values, of_whole);
+    const Prediction of_half = model->predicted(model->neutral()),
+                     of_whole = study.model().predicted(fit.fitted.state.values);
     for (std::size_t o = 0; o < of_whole.size(); ++o) {
         const Observable& observable = study.model().observables()[o];
         if (observable.noise != NoiseKind::Carry) continue;
@@ -83,12 +79,7 @@ std::string not_confirmed(const Study& study, const Selection& selection, double
     const Experiment& whole = study.experiment();
     if (whole.runs.size() < thresholds::kRunsToConfirm || study.folds() < 2) return "";
     const auto second = second_half(study);
-    Weights first;
-    for (const auto& folds : study.fold_of()) {
-        first.emplace_back();
-        for (const int fold : folds)
-            first.back().push_back(fold % 2 == 0 ? 1.0 : 0.0);
-    }
+    const Weights first = study.rows_of_parts([](int fold) { return fold % 2 == 0; });
     Fit half_fit = selection.chosen;
     half_fit.fitted = fit(study.model(), half_fit.freed, half_fit.fitted.state, first, kEffort);
     const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kEffort);

@@ -2,28 +2,27 @@
 
 #include "gap/fit/filter.h"
 #include "gap/fit/likelihood.h"
+#include "gap/stats/series.h"
+#include "gap/stats/tails.h"
 
 #include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 
 namespace puckloop::gap {
 
 namespace {
 
+using stats::normal_density;
+
 constexpr int kSteps = 60;                // of expectation maximisation; it settles within some ten
 constexpr double kFewest = 1e-3;          // share of larger errors
 constexpr double kMost = 0.3;             // beyond, they are not the few
 constexpr double kLeastFactor = 1.5;      // by which they are larger
 constexpr double kBegun[] = {0.02, 4.0};  // share and factor, at first
-
-double normal_density(double z, double sd) {
-    return std::exp(-z * z / (2 * sd * sd)) / (sd * std::sqrt(2 * std::numbers::pi));
-}
 
 struct Law {
     double share = kBegun[0], sd = 1.0, factor = kBegun[1];
@@ -94,11 +93,10 @@ std::vector<double> scores_with_large_errors(const Study& study, const Fit& fit,
                                              const std::vector<std::string>& touched) {
     std::vector<double> scores(study.blocks().count, 0.0);
     const State& state = fit.fitted.state;
-    Prediction prediction;
-    study.model().predict(state.values, prediction);
+    const Prediction prediction = study.model().predicted(state.values);
     for (std::size_t o = 0; o < prediction.size(); ++o) {
         const Observable& observable = study.model().observables()[o];
-        if (std::find(touched.begin(), touched.end(), observable.name) == touched.end()) continue;
+        if (!stats::contains(touched, observable.name)) continue;
         const auto& blocks = study.blocks().of[o];
         Innovations innovations;
         filter(observable, prediction[o], state.noise[o], innovations);

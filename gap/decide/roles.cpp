@@ -3,50 +3,23 @@
 #include "gap/decide/large_errors.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/pushes.h"
-#include "gap/diagnostics/repeats.h"
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/residual_model/free_form.h"
+#include "gap/stats/series.h"
 #include "gap/stats/tails.h"
 #include "gap/validate/placements.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
-#include <numeric>
 
 namespace puckloop::gap {
 
 namespace {
-
-double cost_of(const Study& study, const State& state, const Prediction& prediction) {
-    double sum = 0.0;
-    RowCosts costs;
-    for (std::size_t o = 0; o < prediction.size(); ++o) {
-        row_costs(study.model().observables()[o], prediction[o], state.noise[o], costs);
-        sum = std::accumulate(costs.cost.begin(), costs.cost.end(), sum);
-    }
-    return sum;
-}
-
-bool moves_means(const Prediction& a, const Prediction& b) {
-    const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
-    for (std::size_t o = 0; o < a.size(); ++o)
-        if (!std::equal(a[o].mean.begin(), a[o].mean.end(), b[o].mean.begin(), b[o].mean.end(), same))
-            return true;
-    return false;
-}
-
-bool moves_more_than_means(const Prediction& a, const Prediction& b) {
-    for (std::size_t o = 0; o < a.size(); ++o) {
-        Predicted one = a[o];
-        one.mean = b[o].mean;
-        if (one != b[o]) return true;
-    }
-    return false;
-}
 
 /// What the model lacks in its mean, seen without the effects that scatter.
 std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
@@ -54,9 +27,7 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
                         std::uint64_t seed) {
     const auto touched = scattered_by(study, fit, scatter);
     if (touched.empty()) return "";
-    const auto is_touched = [&](const std::string& name) {
-        return std::find(touched.begin(), touched.end(), name) != touched.end();
-    };
+    const auto is_touched = [&](const std::string& name) { return stats::contains(touched, name); };
     const auto sure = [&](const Leftover& left) {
         return left.p_value < thresholds::kSure && is_touched(left.observable);
     };
@@ -66,7 +37,7 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     if (stats::normal_tail(repeats_at_once(study, fit, scatter)) < thresholds::kSure)
         return "explains scatter that is there again at the next reading";
     const Fit calm = without_effects(study, fit, scatter);
-    const double won = std::max(gain_of(gains_by_block(study.blocks(), study.hold_out(calm), held)).sum, 0.0);
+    const double won = std::max(study.gain(study.hold_out(calm), held).sum, 0.0);
     const auto too_much = [&](double left) { return left > thresholds::kShareLeft * (left + won); };
     double by_run = 0.0;
     for (const RunDifference& one : run_differences(study.model(), calm.fitted.state))
@@ -74,24 +45,18 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
             by_run = std::max(by_run, one.gain);
     if (by_run > 0 && too_much(by_run)) return "explains scatter that differs from run to run in its mean";
     const auto forms = free_forms_of(study.experiment(), study.model(), calm.fitted.state, seed, touched);
-    const bool bursts =
-        std::any_of(forms.begin(), forms.end(), [](const FreeForm& form) { return form.spells; });
+    const bool bursts = std::ranges::any_of(forms, [](const FreeForm& form) { return form.spells; });
     if (bursts && lapses(study, fit)) return "explains scatter that comes in bursts";
     const double shaped = gained_by_shape(forms);
     if (shaped > 0 && too_much(shaped)) return "explains scatter that has a shape";
     // Larger errors cover any mean that the model lacks: with one that is left for sure, who knows how much.
-    return std::any_of(leftovers.begin(), leftovers.end(), sure)
-               ? "explains scatter beside a structure that is left"
-               : "";
+    return std::ranges::any_of(leftovers, sure) ? "explains scatter beside a structure that is left" : "";
 }
 
-/// The effects that make single errors large, if a law of errors without a mechanism does as well.
-std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit& fit) {
-    std::vector<std::size_t> outliers;
-    for (const std::size_t effect : fit.effects)
-        if (study.candidates()[effect].effect->role == EffectRole::Outlier) outliers.push_back(effect);
+/// Does a law of errors without a mechanism do as well as the effects that make single errors large?
+bool no_more_than_large_errors(const Study& study, const Fit& fit, const std::vector<std::size_t>& outliers) {
     const auto touched = scattered_by(study, fit, outliers);
-    if (outliers.empty() || touched.empty()) return {};
+    if (outliers.empty() || touched.empty()) return false;
     const Fit calm = without_effects(study, fit, outliers);
     // Other errors may follow that law with the cause and without it, so that they speak for neither. Both
     // fits saw these rows: a nat is taken off for each number that is fitted (Akaike 1974).
@@ -100,40 +65,33 @@ std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit
     const auto fitted = static_cast<double>(fit.freed.size() - calm.freed.size());
     for (std::size_t block = 0; block < gains.size(); ++block)
         gains[block] -= by_law[block] + fitted / static_cast<double>(gains.size());
-    return gains_enough(gain_of(gains), study.candidates().size(), outliers.size())
-               ? std::vector<std::size_t>{}
-               : outliers;
+    return !gains_enough(gain_of(gains), study.candidates().size(), outliers.size());
 }
 
 }  // namespace
 
 double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
-    const State& whole = fit.fitted.state;
-    const State without = study.without(effect, whole);
-    Prediction with_it, without_it;
-    study.model().predict(whole.values, with_it);
-    study.model().predict(without.values, without_it);
-    if (!moves_means(with_it, without_it)) return std::numeric_limits<double>::quiet_NaN();
-    if (!moves_more_than_means(with_it, without_it)) return 1.0;
-    Prediction mean_only = without_it, rest_only = with_it;
-    for (std::size_t o = 0; o < with_it.size(); ++o) {
-        mean_only[o].mean = with_it[o].mean;
-        rest_only[o].mean = without_it[o].mean;
-    }
+    const Contrast both = contrast(study, fit, effect);
+    if (!both.moves_means()) return std::numeric_limits<double>::quiet_NaN();
+    if (!both.moves_more_than_means()) return 1.0;
+    Prediction mean_only = both.without, rest_only = both.with;
+    for (std::size_t o = 0; o < mean_only.size(); ++o)
+        std::swap(mean_only[o].mean, rest_only[o].mean);
+    const auto cost = [&](const Prediction& prediction) {
+        return cost_of(study.model(), fit.fitted.state, prediction);
+    };
     // What the means bring may be seen before or after the scatter that goes with them.
-    const double all = cost_of(study, whole, without_it), none = cost_of(study, whole, with_it);
-    const double first = all - cost_of(study, whole, mean_only),
-                 last = cost_of(study, whole, rest_only) - none;
+    const double all = cost(both.without), none = cost(both.with);
+    const double first = all - cost(mean_only), last = cost(rest_only) - none;
     return all > none ? std::max(first, last) / (all - none) : 0.0;
 }
 
 bool within_rounding(const Study& study, const Fit& fit, std::size_t effect) {
-    Prediction with, without;
-    study.model().predict(fit.fitted.state.values, with);
-    study.model().predict(study.without(effect, fit.fitted.state).values, without);
-    if (!moves_means(with, without)) return false;
-    if (study.candidates()[effect].effect->role != EffectRole::Mean && moves_more_than_means(with, without))
+    const Contrast both = contrast(study, fit, effect);
+    if (!both.moves_means()) return false;
+    if (study.candidates()[effect].effect->role != EffectRole::Mean && both.moves_more_than_means())
         return false;
+    const auto &with = both.with, &without = both.without;
     for (std::size_t o = 0; o < with.size(); ++o) {
         const Observable& observable = study.model().observables()[o];
         double squares = 0.0, fourths = 0.0;
@@ -152,39 +110,30 @@ bool within_rounding(const Study& study, const Fit& fit, std::size_t effect) {
 
 OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
                       const std::vector<Leftover>& leftovers, std::uint64_t seed) {
-    OutOfRole result;
-    for (const std::size_t effect : fit.effects)
-        if (within_rounding(study, fit, effect)) result.effects.push_back(effect);
-    if (!result.effects.empty()) {
-        result.why = "moves readings by no more than their rounding";
-        return result;
-    }
-    for (const std::size_t effect : fit.effects) {
-        if (study.candidates()[effect].effect->role != EffectRole::Mean) continue;
-        if (mean_share(study, fit, effect) < thresholds::kMeanShare) result.effects.push_back(effect);
-    }
-    if (!result.effects.empty()) {
-        result.why = "gains by larger errors, not by the means it moves";
-        return result;
-    }
-    for (const std::size_t effect : fit.effects)
-        if (study.candidates()[effect].effect->role == EffectRole::Outlier &&
-            push_pattern(study.experiment(), study.model(), fit.fitted.state)) {
-            result.effects.push_back(effect);
-            result.why = "keeps to a place, a command or a run, and chance does not";
-            return result;
-        }
-    result.effects = no_more_than_large_errors(study, fit);
-    if (!result.effects.empty()) {
-        result.why = "explains no more than errors of which a few are larger do";
-        result.law_alone = result.effects.size() == fit.effects.size();
-        return result;
-    }
+    const auto those = [&](const auto& are) {
+        std::vector<std::size_t> effects;
+        std::ranges::copy_if(fit.effects, std::back_inserter(effects), are);
+        return effects;
+    };
+    const auto is = [&](std::size_t effect, EffectRole role) {
+        return study.candidates()[effect].effect->role == role;
+    };
+    auto doubted = those([&](std::size_t effect) { return within_rounding(study, fit, effect); });
+    if (!doubted.empty()) return {doubted, "moves readings by no more than their rounding"};
+    doubted = those([&](std::size_t effect) {
+        return is(effect, EffectRole::Mean) && mean_share(study, fit, effect) < thresholds::kMeanShare;
+    });
+    if (!doubted.empty()) return {doubted, "gains by larger errors, not by the means it moves"};
+    const auto outliers = those([&](std::size_t effect) { return is(effect, EffectRole::Outlier); });
+    if (!outliers.empty() && push_pattern(study.experiment(), study.model(), fit.fitted.state))
+        return {{outliers.front()}, "keeps to a place, a command or a run, and chance does not"};
+    if (no_more_than_large_errors(study, fit, outliers))
+        return {outliers, "explains no more than errors of which a few are larger do",
+                outliers.size() == fit.effects.size()};
     const auto scatter = scatter_effects(study, fit);
-    if (scatter.empty()) return result;
-    result.why = mean_behind(study, fit, held, leftovers, scatter, seed);
-    if (!result.why.empty()) result.effects = scatter;
-    return result;
+    if (scatter.empty()) return {};
+    const std::string why = mean_behind(study, fit, held, leftovers, scatter, seed);
+    return why.empty() ? OutOfRole{} : OutOfRole{scatter, why};
 }
 
 double gained_by_shape(const std::vector<FreeForm>& forms) {

@@ -3,6 +3,7 @@
 #include "gap/fit/parallel.h"
 #include "gap/fit/study.h"
 #include "gap/fit/thinned.h"
+#include "gap/stats/series.h"
 
 #include <fmt/format.h>
 
@@ -44,7 +45,7 @@ std::string agenda_caution(const Experiment& experiment, const std::vector<std::
     const bool staircase = experiment.nominal_or(kAgenda, 1.0) != 0;
     std::vector<std::string> all(std::begin(kWheels), std::end(kWheels));
     for (const std::string& name : effects)
-        if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+        if (!stats::contains(all, name)) all.push_back(name);
     std::array<Experiment, 2> parts{thinned(experiment, kRows), thinned(experiment, kRows)};
     parts[1].nominal[kAgenda] = staircase ? 0.0 : 1.0;
     std::array<double, 2> likelihood{};

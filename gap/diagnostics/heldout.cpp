@@ -20,25 +20,29 @@ double root_mean(const std::vector<double>& sums, double rows) {
     return std::sqrt(sum_of(sums) / std::max(rows, 1.0));
 }
 
-void ratio_of(const std::vector<double>& before, const std::vector<double>& after, std::uint64_t seed,
-              double& ratio, double& low, double& high) {
+/// Errors before and after, from the squares of each block, and their ratio with a 90 % interval over blocks.
+template <class Figures>
+void compare(const std::vector<double>& before, const std::vector<double>& after, double rows,
+             std::uint64_t seed, Figures& to) {
+    to.before = root_mean(before, rows);
+    to.after = root_mean(after, rows);
+    const double all = sum_of(before);
+    to.ratio = to.low = to.high = all > 0 ? std::sqrt(sum_of(after) / all) : 1.0;
     RandomStream random(seed, "gap/ratio");
     std::vector<double> ratios;
-    const std::size_t n = before.size();
-    const double all_before = sum_of(before), all_after = sum_of(after);
-    ratio = all_before > 0 ? std::sqrt(all_after / all_before) : 1.0;
     for (int draw = 0; draw < kDraws; ++draw) {
         double b = 0, a = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::size_t k = random.below(n);
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            const std::size_t k = random.below(before.size());
             b += before[k];
             a += after[k];
         }
         if (b > 0) ratios.push_back(std::sqrt(a / b));
     }
-    std::sort(ratios.begin(), ratios.end());
-    low = ratios.empty() ? ratio : ratios[ratios.size() / 20];
-    high = ratios.empty() ? ratio : ratios[ratios.size() - 1 - ratios.size() / 20];
+    if (ratios.empty()) return;
+    std::ranges::sort(ratios);
+    to.low = ratios[ratios.size() / 20];
+    to.high = ratios[ratios.size() - 1 - ratios.size() / 20];
 }
 
 }  // namespace
@@ -67,21 +71,17 @@ HeldFigures held_figures(const Study& study, const Selection& selection, std::ui
     HeldFigures figures;
     Held& held = figures.all;
     const double rows = sum_of(counts);
-    ratio_of(before.back(), after.back(), seed, held.ratio, held.low, held.high);
-    held.before = root_mean(before.back(), rows);
-    held.after = root_mean(after.back(), rows);
+    compare(before.back(), after.back(), rows, seed, held);
     for (std::size_t o = 0; o < observables.size(); ++o) {
         HeldObservable one{observables[o].name, observables[o].unit};
-        ratio_of(before[o], after[o], seed, one.ratio, one.low, one.high);
-        one.before = root_mean(before[o], static_cast<double>(observables[o].y.size()));
-        one.after = root_mean(after[o], static_cast<double>(observables[o].y.size()));
+        compare(before[o], after[o], static_cast<double>(observables[o].y.size()), seed, one);
         figures.observables.push_back(std::move(one));
         for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
             held.score_before += selection.held_none.score[o][i] / rows;
             held.score_after += selection.held_chosen.score[o][i] / rows;
         }
     }
-    const Gain gain = gain_of(gains_by_block(study.blocks(), selection.held_none, selection.held_chosen));
+    const Gain gain = study.gain(selection.held_none, selection.held_chosen);
     held.score_low = (gain.sum - 1.645 * gain.sd) / rows;
     held.score_high = (gain.sum + 1.645 * gain.sd) / rows;
     held.runs = static_cast<int>(units);

@@ -1,5 +1,6 @@
 #include "gap/diagnostics/leftovers.h"
 
+#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/stats/robust.h"
 
@@ -26,34 +27,33 @@ bool is_rounding(const stats::Finding& finding, const Series& series, double qua
 
 }  // namespace
 
-std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
-                                   const std::vector<double>& quanta, std::uint64_t seed, double level) {
+std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Observable>& observables,
+                                   const std::vector<Series>& series, std::uint64_t seed) {
     const stats::TestOptions options{.seed = seed, .permutations = kPermutations};
     std::vector<std::vector<stats::Finding>> tables;
     for (std::size_t o = 0; o < series.size(); ++o) {
         auto table = is_counter(series[o].observable)
                          ? std::vector<stats::Finding>{}
                          : residual_structure(experiment, series[o], Stage::After, options);
-        std::erase_if(table,
-                      [&](const stats::Finding& one) { return is_rounding(one, series[o], quanta[o]); });
+        std::erase_if(table, [&](const stats::Finding& one) {
+            return is_rounding(one, series[o], observables[o].instrument.quantum);
+        });
         tables.push_back(std::move(table));
     }
-    std::vector<std::vector<stats::Finding>*> all;
-    for (auto& table : tables)
-        all.push_back(&table);
-    stats::adjust_together(all);
+    stats::adjust_together(tables);
     std::vector<Leftover> left;
     for (std::size_t o = 0; o < series.size(); ++o)
         for (const stats::Finding& finding : tables[o]) {
             // Tails and held samples are the noise's business; what is carried over is in its model.
-            if (finding.p_adjusted > level || finding.test == "outliers" || finding.test == "held") continue;
+            if (finding.p_adjusted > thresholds::kReported || finding.test == "outliers" ||
+                finding.test == "held")
+                continue;
             const std::string against = finding.covariate.empty()      ? finding.test
                                         : finding.covariate == "level" ? "predicted level"
                                                                        : finding.covariate;
             left.push_back({series[o].observable, against, finding.p_adjusted, finding.shape});
         }
-    std::stable_sort(left.begin(), left.end(),
-                     [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
+    std::ranges::stable_sort(left, {}, &Leftover::p_value);
     return left;
 }
 

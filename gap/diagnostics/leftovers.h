@@ -2,6 +2,7 @@
 // What is left after the best model: the structures that chance does not explain.
 
 #include "gap/data/experiment.h"
+#include "gap/models/model.h"
 #include "gap/verdict/verdict.h"
 
 #include <cstdint>
@@ -16,9 +17,9 @@ inline bool is_counter(const std::string& observable) {
 }
 
 /// Structures of the series' innovations after the fit that chance does not explain (corrected over all
-/// observables) at `level`, the surest first. `quanta`: the step to which each observable is rounded; a
-/// structure smaller than it is what rounding makes.
-std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
-                                   const std::vector<double>& quanta, std::uint64_t seed, double level);
+/// observables), the surest first. A structure smaller than the step to which its observable is rounded is
+/// what rounding makes.
+std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Observable>& observables,
+                                   const std::vector<Series>& series, std::uint64_t seed);
 
 }  // namespace puckloop::gap

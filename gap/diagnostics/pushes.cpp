@@ -12,14 +12,13 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kLeastPushes = 3.0;
-constexpr double kByChance = 1e-3;  // corrected p above which nothing is said
+constexpr double kByChance = 1e-3;  // corrected p above which nothing is reported
 
 }  // namespace
 
 std::optional<PushPattern> push_pattern(const Experiment& experiment, const Model& model,
                                         const State& state) {
-    Prediction prediction;
-    model.predict(state.values, prediction);
+    const Prediction prediction = model.predicted(state.values);
     const Observable* base = nullptr;
     std::vector<double> pushed, chance;
     for (std::size_t o = 0; o < model.observables().size(); ++o) {
@@ -52,12 +51,8 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
     const auto components = free_form_cells(experiment, rows, base->starts);
     double tried = 0.0, least = 1.0;
     for (const stats::Component& component : components) {
-        std::vector<double> there(static_cast<std::size_t>(component.cells), 0.0), share = there;
-        for (std::size_t i = 0; i < pushed.size(); ++i) {
-            if (component.cell[i] < 0) continue;
-            there[static_cast<std::size_t>(component.cell[i])] += pushed[i];
-            share[static_cast<std::size_t>(component.cell[i])] += chance[i] / hoped;
-        }
+        const auto there = stats::sums_of_cells(component, [&](std::size_t i) { return pushed[i]; }),
+                   share = stats::sums_of_cells(component, [&](std::size_t i) { return chance[i] / hoped; });
         for (std::size_t c = 0; c < there.size(); ++c) {
             if (share[c] <= 0) continue;
             tried += 1;

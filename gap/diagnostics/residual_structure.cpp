@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -17,8 +16,6 @@ namespace {
 
 using stats::Covariate;
 using stats::CovariateKind;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What names a thing, not a size.
 const std::set<std::string_view> kLabels{"sensor", "object",  "emitter", "receiver",
@@ -35,9 +32,9 @@ constexpr std::string_view kMeasuredHeading = "theta_rad";
 constexpr double kSector = std::numbers::pi / 6, kLeavesSector = 0.75 * kSector;
 
 std::vector<double> in_sectors(std::vector<double> heading, const std::vector<std::uint32_t>& run) {
-    double sector = kNan;
+    double sector = NAN;
     for (std::size_t i = 0; i < heading.size(); ++i) {
-        if (i == 0 || run[i] != run[i - 1]) sector = kNan;
+        if (i == 0 || run[i] != run[i - 1]) sector = NAN;
         const double value = std::remainder(heading[i], 2 * std::numbers::pi);
         if (std::isnan(value)) continue;
         const bool stays = std::abs(std::remainder(value - sector, 2 * std::numbers::pi)) < kLeavesSector;
@@ -50,7 +47,7 @@ std::vector<double> in_sectors(std::vector<double> heading, const std::vector<st
 
 /// Value of a column in each row of the series; a derived column by run likewise.
 std::vector<double> gathered(const Series& series, const std::vector<const std::vector<double>*>& by_run) {
-    std::vector<double> values(series.run.size(), kNan);
+    std::vector<double> values(series.run.size(), NAN);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::vector<double>& column = *by_run[series.run[i]];
         if (series.row[i] < column.size()) values[i] = column[series.row[i]];
@@ -97,13 +94,13 @@ Derived derived_of(const Run& run) {
     double travelled = 0, last = 0;
     for (std::size_t i = 0; i < run.rows; ++i) {
         const std::size_t from = i == 0 ? 0 : i - 1;
-        const double dt = i == 0 ? kNan : t[i] - t[from];
+        const double dt = i == 0 ? NAN : t[i] - t[from];
         const double l = (left[i] - left[from]) / dt, r = (right[i] - right[from]) / dt;
         const double speed = (l + r) / 2;
         if (i > 0 && std::isfinite(speed)) travelled += std::fabs(speed) * dt;
         d.speed.push_back(speed);
         d.turn_rate.push_back(r - l);
-        d.acceleration.push_back(i > 1 ? (speed - last) / dt : kNan);
+        d.acceleration.push_back(i > 1 ? (speed - last) / dt : NAN);
         d.travelled.push_back(travelled);
         last = speed;
     }
@@ -147,7 +144,7 @@ const std::vector<double>& simulated(const Series& series, Stage stage) {
 
 std::vector<double> left_over(const Series& series, Stage stage) {
     const std::vector<double>& shown = simulated(series, stage);
-    std::vector<double> rest(series.measured.size(), kNan);
+    std::vector<double> rest(series.measured.size(), NAN);
     for (std::size_t i = 0; i < rest.size() && i < shown.size(); ++i)
         rest[i] = series.measured[i] - shown[i];
     return rest;

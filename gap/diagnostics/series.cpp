@@ -4,14 +4,13 @@
 #include "gap/models/model.h"
 #include "gap/stats/series.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace puckloop::gap {
 
 std::vector<Series> series_of(const Model& model, const State& before, const State& after) {
-    Prediction old_prediction, new_prediction;
+    const Prediction old_prediction = model.predicted(before.values),
+                     new_prediction = model.predicted(after.values);
     const auto old_costs = costs_at(model, before, old_prediction),
                new_costs = costs_at(model, after, new_prediction);
     std::vector<Series> all;
@@ -31,10 +30,7 @@ std::vector<Series> series_of(const Model& model, const State& before, const Sta
             one.measured.push_back(observable.y[i]);
             one.before.push_back(shown(old_prediction[o], i));
             one.after.push_back(shown(new_prediction[o], i));
-            one.scale.push_back(
-                observable.noise == NoiseKind::Event
-                    ? std::sqrt(std::max(new_prediction[o].mean[i] * (1 - new_prediction[o].mean[i]), 1e-6))
-                    : row_sd(observable, new_prediction[o], after.noise[o], i));
+            one.scale.push_back(row_sd(observable, new_prediction[o], after.noise[o], i));
             one.innovation_before.push_back(old_costs[o].innovation[i]);
             one.innovation_after.push_back(new_costs[o].innovation[i]);
         }

@@ -20,8 +20,7 @@ Gain gain_of(const std::vector<double>& by_block) {
     for (const double one : by_block)
         squares += (one - gain.sum / n) * (one - gain.sum / n);
     gain.sd = n > 1 ? std::sqrt(squares * n / (n - 1)) : INFINITY;
-    gain.without_best =
-        by_block.empty() ? 0.0 : gain.sum - *std::max_element(by_block.begin(), by_block.end());
+    gain.without_best = by_block.empty() ? 0.0 : gain.sum - *std::ranges::max_element(by_block);
     return gain;
 }
 

@@ -1,6 +1,6 @@
 #include "gap/fit/filter.h"
 
-#include "gap/fit/sums.h"
+#include "gap/fit/walk.h"
 
 #include <Eigen/Core>
 
@@ -20,8 +20,13 @@ constexpr std::size_t kFirstRows = 5;
 constexpr unsigned kLookBack = 5;    // rows: an error is forgotten, a push stays
 constexpr double kPileWidths = 3.0;  // from the ceiling: nearer readings were cut to it
 
-double at(const std::vector<double>& values, std::size_t i, double neutral) {
-    return values.empty() ? neutral : values[i];
+/// The lanes' numbers side by side.
+template <class Number>
+Lanes lanes_of(const Number& number) {
+    Lanes lanes;
+    for (std::size_t k = 0; k < kLanes; ++k)
+        lanes[static_cast<Eigen::Index>(k)] = number(k);
+    return lanes;
 }
 
 /// Sinusoid of unknown phase: two amplitudes learnt row by row.
@@ -117,7 +122,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             const Beginning first = beginning(o, p, i);
             const double guess = first.guess / sd, unsure = unsure_of(first.rows, noise.memory);
             walk.begin(error, guess, unsure);
-            lever.begin(at(p.lever, i, 0.0) / sd, p.lever_sd * p.lever_sd);
+            lever.begin(of_row(p.lever, i) / sd, p.lever_sd * p.lever_sd);
             if (pushes) pushed.begin(error, guess, unsure, lever);
             const bool plain = first.rows > 1;
             out.role[i] = plain ? RowRole::Plain : RowRole::First;
@@ -129,8 +134,8 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         }
         double innovation = 0.0;
         const double gained =
-            turned_in(o, i, noise.memory) + (at(o.jolt, i, 0.0) + at(p.jolt, i, 0.0)) / (sd * sd);
-        const double level = walk.level, arm = at(p.lever, i, 0.0) / sd;
+            turned_in(o, i, noise.memory) + (of_row(o.jolt, i) + of_row(p.jolt, i)) / (sd * sd);
+        const double level = walk.level, arm = of_row(p.lever, i) / sd;
         const double unlevered = error - walk.level - noise.memory * walk.error;
         const double variance =
             levered ? walk.filter(error, arm, lever, drift + gained, noise.memory, nu, innovation)
@@ -188,7 +193,7 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
             carried = true;
             continue;
         }
-        const double reach = p.line_amplitude * at(o.gate, i, 1.0) / sd;
+        const double reach = p.line_amplitude * of_row(o.gate, i, 1.0) / sd;
         const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
                                         reach * std::sin(omega * o.time[i])};
         const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
@@ -201,6 +206,14 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
 }
 
 }  // namespace
+
+void Innovations::reset(std::size_t rows) {
+    z.resize(rows);
+    variance.assign(rows, 1.0);
+    role.assign(rows, RowRole::Plain);
+    mixed.clear();
+    pushed.clear();
+}
 
 Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
     std::array<double, kFirstRows> errors;
@@ -225,83 +238,52 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
                  const std::array<NoiseParameters, kLanes>& noise,
                  const std::array<Innovations*, kLanes>& out) {
     const std::size_t n = o.y.size();
-    std::array<const double*, kLanes> mean{};
-    std::array<double*, kLanes> z{}, variance{};
-    Lanes sd, memory, drift, tail;
-    for (std::size_t k = 0; k < kLanes; ++k) {
-        const auto lane = static_cast<Eigen::Index>(k);
-        mean[k] = predicted[k]->mean.data();
-        sd[lane] = RowSize(o, *predicted[k], noise[k]).at(0);
-        memory[lane] = noise[k].memory;
-        drift[lane] = std::exp(noise[k].carry);
-        tail[lane] = std::exp(noise[k].log_tail);
-        out[k]->z.resize(n);
-        out[k]->variance.assign(n, 1.0);
-        out[k]->role.assign(n, RowRole::Plain);
-        out[k]->mixed.clear();
-        out[k]->pushed.clear();
-        z[k] = out[k]->z.data();
-        variance[k] = out[k]->variance.data();
-    }
-    const Lanes squared_sd = sd * sd;
+    for (Innovations* one : out)
+        one->reset(n);
+    const Lanes sd = lanes_of([&](std::size_t k) { return RowSize(o, *predicted[k], noise[k]).at(0); }),
+                memory = lanes_of([&](std::size_t k) { return noise[k].memory; }),
+                drift = lanes_of([&](std::size_t k) { return std::exp(noise[k].carry); }),
+                tail = lanes_of([&](std::size_t k) { return std::exp(noise[k].log_tail); }),
+                doubt = lanes_of([&](std::size_t k) { return std::pow(predicted[k]->lever_sd, 2); }),
+                squared_sd = sd * sd;
+    const auto write = [&](std::size_t i, const Lanes& z, const Lanes& variance) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            out[k]->z[i] = z[static_cast<Eigen::Index>(k)];
+            out[k]->variance[i] = variance[static_cast<Eigen::Index>(k)];
+        }
+    };
     WalkOf<Lanes> walk;
     LeverOf<Lanes> lever;
     const bool levered = !predicted[0]->lever.empty();
-    Lanes arm = Lanes::Zero(), doubt;
-    for (std::size_t k = 0; k < kLanes; ++k)
-        doubt[static_cast<Eigen::Index>(k)] = predicted[k]->lever_sd * predicted[k]->lever_sd;
     for (std::size_t i = 0; i < n; ++i) {
-        Lanes error, innovation;
-        if (levered) {
-            for (std::size_t k = 0; k < kLanes; ++k)
-                arm[static_cast<Eigen::Index>(k)] = predicted[k]->lever[i];
-            arm /= sd;
-        }
+        Lanes arm = Lanes::Zero(), innovation;
+        if (levered) arm = lanes_of([&](std::size_t k) { return predicted[k]->lever[i]; }) / sd;
         if (i == 0 || o.starts[i] != 0) {
-            Lanes guess;
-            double rows = 1.0;
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                const Beginning first = beginning(o, *predicted[k], i);
-                error[static_cast<Eigen::Index>(k)] = first.error;
-                guess[static_cast<Eigen::Index>(k)] = first.guess;
-                rows = first.rows;
-            }
-            error /= sd;
-            guess /= sd;
+            std::array<Beginning, kLanes> first;
+            for (std::size_t k = 0; k < kLanes; ++k)
+                first[k] = beginning(o, *predicted[k], i);
+            const double rows = first.back().rows;
+            const Lanes error = lanes_of([&](std::size_t k) { return first[k].error; }) / sd,
+                        guess = lanes_of([&](std::size_t k) { return first[k].guess; }) / sd;
             walk.begin(error, guess, unsure_of(rows, memory));
             if (levered) lever.begin(arm, doubt);
-            for (std::size_t k = 0; k < kLanes; ++k) {
-                const auto lane = static_cast<Eigen::Index>(k);
-                z[k][i] = error[lane] - guess[lane];
-                if (rows > 1)
-                    variance[k][i] = squared_sd[lane];
-                else
-                    out[k]->role[i] = RowRole::First;
-            }
+            write(i, error - guess, rows > 1 ? squared_sd : Lanes(Lanes::Ones()));
+            for (Innovations* one : out)
+                if (!(rows > 1)) one->role[i] = RowRole::First;
             continue;
         }
-        for (std::size_t k = 0; k < kLanes; ++k)
-            error[static_cast<Eigen::Index>(k)] = o.y[i] - mean[k][i];
-        error /= sd;
-        const Lanes gained = turned_in(o, i, memory) + at(o.jolt, i, 0.0) / squared_sd;
+        const Lanes error = lanes_of([&](std::size_t k) { return o.y[i] - predicted[k]->mean[i]; }) / sd;
+        const Lanes gained = turned_in(o, i, memory) + of_row(o.jolt, i) / squared_sd;
         const Lanes total = levered ? walk.filter(error, arm, lever, drift + gained, memory, tail, innovation)
                                     : walk.filter(error, drift + gained, memory, tail, innovation);
-        const Lanes standard = innovation / total.sqrt(), own = total * sd * sd;
-        for (std::size_t k = 0; k < kLanes; ++k) {
-            z[k][i] = standard[static_cast<Eigen::Index>(k)];
-            variance[k][i] = own[static_cast<Eigen::Index>(k)];
-        }
+        write(i, innovation / total.sqrt(), total * sd * sd);
     }
 }
 
 void filter(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
             Innovations& out, std::vector<double>* gain) {
     const std::size_t n = observable.y.size();
-    out.z.resize(n);
-    out.variance.assign(n, 1.0);
-    out.role.assign(n, RowRole::Plain);
-    out.mixed.clear();
-    out.pushed.clear();
+    out.reset(n);
     if (observable.noise == NoiseKind::Event) {
         out.role.assign(n, RowRole::Event);
         for (std::size_t i = 0; i < n; ++i)

@@ -1,13 +1,13 @@
 #include "gap/fit/fit.h"
 
 #include "gap/fit/objective.h"
-#include "gap/fit/prior.h"
 
 #include <Eigen/Cholesky>
 #include <ceres/ceres.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace puckloop::gap {
 
@@ -95,15 +95,20 @@ ceres::Solver::Options options_for(int iterations, double room) {
 
 State neutral_state(const Model& model) {
     State state{model.neutral(), {}};
-    Prediction prediction;
-    model.predict(state.values, prediction);
+    const Prediction prediction = model.predicted(state.values);
     for (std::size_t o = 0; o < model.observables().size(); ++o)
         state.noise.push_back(first_guess(model.observables()[o], prediction[o]));
     return state;
 }
 
-std::vector<RowCosts> costs_at(const Model& model, const State& state, Prediction& prediction) {
-    model.predict(state.values, prediction);
+double cost_of(const Model& model, const State& state, const Prediction& prediction) {
+    double sum = 0.0;
+    for (const RowCosts& costs : costs_at(model, state, prediction))
+        sum = std::accumulate(costs.cost.begin(), costs.cost.end(), sum);
+    return sum;
+}
+
+std::vector<RowCosts> costs_at(const Model& model, const State& state, const Prediction& prediction) {
     std::vector<RowCosts> costs(model.observables().size());
     for (std::size_t o = 0; o < costs.size(); ++o)
         row_costs(model.observables()[o], prediction[o], state.noise[o], costs[o]);
@@ -126,8 +131,7 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
     std::vector<double> x(std::max<std::size_t>(layout.size(), 1));
     layout.pack(start, x.data());
     for (std::size_t j = 0; j < layout.size(); ++j) {
-        double low = 0, high = 0;
-        layout.bounds(j, low, high);
+        const auto [low, high] = layout.bounds(j);
         x[j] = std::clamp(x[j], low, high);
     }
     Objective objective(model, layout, start, weights);
@@ -142,20 +146,19 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
         ceres::Problem problem(problem_options);
         problem.AddResidualBlock(&adapter, nullptr, x.data());
         for (std::size_t j = 0; j < layout.size(); ++j) {
-            double low = 0, high = 0;
-            layout.bounds(j, low, high);
+            const auto [low, high] = layout.bounds(j);
             problem.SetParameterLowerBound(x.data(), static_cast<int>(j), low);
             problem.SetParameterUpperBound(x.data(), static_cast<int>(j), high);
         }
         ceres::Solver::Summary summary;
         ceres::Solve(options_for(effort.iterations, room), &problem, &summary);
-        result.iterations = static_cast<int>(summary.iterations.size());
         cost = objective.value(x.data());
     }
     layout.unpack(x.data(), result.state);
+    double log_prior = 0.0;
     for (std::size_t j = 0; j < layout.freed(); ++j)
-        result.log_prior -= prior_cost(x[j]);
-    result.log_likelihood = -cost - result.log_prior;
+        log_prior -= prior_cost(x[j]);
+    result.log_likelihood = -cost - log_prior;
     return result;
 }
 

@@ -10,7 +10,7 @@ namespace puckloop::gap {
 
 /// A model parameter that a fit may change. Weak prior about the neutral value (prior.h).
 struct Freed {
-    int index = -1;  ///< in Model::parameters()
+    std::size_t index = 0;  ///< in Model::parameters()
     double low = 0.0, high = 0.0, prior_sd = 1.0, centre = 0.0;
     double resolution = 0.0;  ///< no interval is narrower than this to either side
     bool threshold = false;   ///< moves no row until it meets something that was tried
@@ -28,8 +28,6 @@ using Weights = std::vector<std::vector<double>>;
 struct Fitted {
     State state;
     double log_likelihood = 0.0;  ///< weighted sum over rows
-    double log_prior = 0.0;       ///< of the freed parameters, without constants
-    int iterations = 0;
 };
 
 State neutral_state(const Model& model);
@@ -48,7 +46,9 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
 
 /// log likelihood of all rows, with what the noise loses for being off the simulator's claim.
 double log_likelihood(const Model& model, const State& state);
-/// Everything about the rows at a state.
-std::vector<RowCosts> costs_at(const Model& model, const State& state, Prediction& prediction);
+/// Everything about the rows at a state, by what the model predicts there.
+std::vector<RowCosts> costs_at(const Model& model, const State& state, const Prediction& prediction);
+/// The sum of what all rows cost, nats.
+double cost_of(const Model& model, const State& state, const Prediction& prediction);
 
 }  // namespace puckloop::gap

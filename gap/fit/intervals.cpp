@@ -39,7 +39,7 @@ double fall_off(const Study& study, const Fit& fit, std::size_t index, double qu
 /// Where else a fit of this parameter was begun, if what it ends at there is as likely as the fit itself, as
 /// far as the interval goes: rows that cannot part two values (a period and its multiples) leave both.
 std::vector<double> as_likely(const Study& study, const Fit& fit, std::size_t j, double lost, double reach) {
-    const auto index = static_cast<std::size_t>(fit.freed[j].index);
+    const auto index = fit.freed[j].index;
     const double value = fit.fitted.state.values[index], here = fit.fitted.log_likelihood;
     std::vector<double> others;
     for (const std::size_t effect : fit.effects) {
@@ -120,7 +120,7 @@ Precision precision_of(const Study& study, const Fit& fit) {
 
 Interval interval_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j) {
     const Freed& freed = fit.freed[j];
-    const auto index = static_cast<std::size_t>(freed.index);
+    const auto index = freed.index;
     const double value = fit.fitted.state.values[index];
     const double reach = std::max(precision.quantile * precision.sd[j], freed.resolution);
     // What cannot be negative (rates, noise, times) is about symmetric in its root, not in itself: a rate

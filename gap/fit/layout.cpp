@@ -15,8 +15,8 @@ Layout::Layout(const Model& model, const std::vector<Freed>& freed, const Effort
     const auto left = [&](bool wanders) { return !effort.noise || (wanders && !effort.wander); };
     for (const Nuisance& one : model.nuisances())
         if (!left(one.wanders))
-            freed_.push_back({one.index, one.low, one.high, one.prior_sd,
-                              model.parameters()[static_cast<std::size_t>(one.index)].neutral});
+            freed_.push_back(
+                {one.index, one.low, one.high, one.prior_sd, model.parameters()[one.index].neutral});
     for (std::size_t o = 0; o < model.observables().size(); ++o)
         for (int k = 0; k < noise_parameters(model.observables()[o]); ++k)
             if (k == 0 || !left(k == 1 && model.observables()[o].noise == NoiseKind::Level))
@@ -41,13 +41,10 @@ void Layout::unpack(const double* x, State& state) const {
         noise_parameter(state.noise[noise_[k].first], noise_[k].second) = x[freed_.size() + k];
 }
 
-void Layout::bounds(std::size_t j, double& low, double& high) const {
-    if (j < freed_.size()) {
-        low = (freed_[j].low - freed_[j].centre) / freed_[j].prior_sd;
-        high = (freed_[j].high - freed_[j].centre) / freed_[j].prior_sd;
-    } else {
-        noise_bounds(model_.observables()[observable(j)].noise, noise_index(j), low, high);
-    }
+std::pair<double, double> Layout::bounds(std::size_t j) const {
+    if (j >= freed_.size()) return noise_bounds(model_.observables()[observable(j)].noise, noise_index(j));
+    const Freed& one = freed_[j];
+    return {(one.low - one.centre) / one.prior_sd, (one.high - one.centre) / one.prior_sd};
 }
 
 double Layout::longest(std::size_t j) const {

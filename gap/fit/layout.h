@@ -3,6 +3,7 @@
 
 #include "gap/fit/fit.h"
 
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap {
@@ -22,7 +23,8 @@ class Layout {
     void pack(const State& state, double* x) const;
     /// Writes the numbers into `state`; model parameters are kept within their range.
     void unpack(const double* x, State& state) const;
-    void bounds(std::size_t j, double& low, double& high) const;
+    /// The least and the most that the number may be.
+    std::pair<double, double> bounds(std::size_t j) const;
     /// The longest step of this number that a curvature is believed for.
     double longest(std::size_t j) const;
 

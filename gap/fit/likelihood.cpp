@@ -20,10 +20,6 @@ double square(double value) {
     return value * value;
 }
 
-double normal_density(double z) {
-    return std::exp(-z * z / 2) / std::sqrt(2 * kPi);
-}
-
 /// ln(1 + q), q >= 0; std::log1p takes twice as long.
 double log_above(double q) {
     return q < kSmall ? q * (1 - q * (0.5 - q / 3)) : std::log(1 + q);
@@ -137,10 +133,10 @@ class LogProduct {
 double cost_sum(const Observable& o, const Predicted& p, const NoiseParameters& noise,
                 const Innovations& innovations, const std::vector<double>& weights) {
     const std::size_t n = o.y.size();
-    const bool plain = is_simple(p) && innovations.mixed.empty() &&
-                       std::all_of(innovations.role.begin(), innovations.role.end(), [](RowRole role) {
-                           return role == RowRole::Plain || role == RowRole::First;
-                       });
+    const bool plain =
+        is_simple(p) && innovations.mixed.empty() && std::ranges::all_of(innovations.role, [](RowRole role) {
+            return role == RowRole::Plain || role == RowRole::First;
+        });
     if (!plain) {
         std::vector<double> cost;
         costs_of(o, p, noise, innovations, cost);
@@ -204,7 +200,8 @@ void slopes_of(const Observable& o, const NoiseParameters& noise, const Innovati
             curvature[i] = 1 / (z * (1 - z));
         } else {
             const double sign = role == RowRole::Low ? 1 : -1;
-            const double hazard = (1 - kLeastProbability) * normal_density(z) / clip_likelihood(role, z);
+            const double hazard =
+                (1 - kLeastProbability) * stats::normal_density(z) / clip_likelihood(role, z);
             const double bend = hazard * (hazard + sign * z);
             slope[i] = -sign * hazard;
             curvature[i] = bend > 0 ? bend : hazard * hazard;

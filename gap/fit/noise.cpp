@@ -1,23 +1,20 @@
 #include "gap/fit/noise.h"
 
+#include "gap/decide/thresholds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr double kLeastSd = 1e-12;
+constexpr double kLeastSd = 1e-12, kLeastVariance = 1e-6;  // of a reading; of an event
 constexpr double kLeastTail = 0.5;    // degrees of freedom above 2: nearer, a sd says nothing of the scale
 constexpr double kFixedDrift = -9.0;  // of noise that is not fitted
 constexpr double kFixedTail = 4.0;
-
-double of_row(const std::vector<double>& values, std::size_t i, double neutral) {
-    return values.empty() ? neutral : values[i];
-}
 
 }  // namespace
 
@@ -30,13 +27,13 @@ int noise_parameters(const Observable& observable) {
     return observable.noise == NoiseKind::Event ? 0 : observable.noise == NoiseKind::Level ? 4 : 3;
 }
 
-void noise_bounds(NoiseKind kind, int index, double& low, double& high) {
-    const bool level = kind == NoiseKind::Level;
-    const std::pair<double, double> bounds[] = {{-30, 15},
-                                                level ? std::pair(-16.0, 6.0) : std::pair(-0.5, 0.97),
+std::pair<double, double> noise_bounds(NoiseKind kind, int index) {
+    const std::pair<double, double> bounds[] = {{-30.0, 15.0},
+                                                kind == NoiseKind::Level ? std::pair(-16.0, 6.0)
+                                                                         : std::pair(-0.5, 0.97),
                                                 {std::log(2.2), std::log(60.0)},
-                                                {0, 0.95}};
-    std::tie(low, high) = bounds[index];
+                                                {0.0, 0.95}};
+    return bounds[index];
 }
 
 RowSize::RowSize(const Observable& o, const Predicted& p, const NoiseParameters& noise)
@@ -55,7 +52,13 @@ double RowSize::of(std::size_t i) const {
 }
 
 double row_sd(const Observable& o, const Predicted& p, const NoiseParameters& noise, std::size_t i) {
-    return RowSize(o, p, noise).at(i);
+    if (o.noise != NoiseKind::Event) return RowSize(o, p, noise).at(i);
+    return std::sqrt(std::max(p.mean[i] * (1 - p.mean[i]), kLeastVariance));
+}
+
+bool is_rounding(const Observable& o, const NoiseParameters& noise) {
+    return o.noise == NoiseKind::Level &&
+           std::exp(noise.log_sd) < thresholds::kFineNoise * o.instrument.quantum;
 }
 
 NoiseParameters first_guess(const Observable& o, const Predicted& p) {

@@ -4,6 +4,8 @@
 
 #include "gap/models/model.h"
 
+#include <utility>
+
 namespace puckloop::gap {
 
 /// Free numbers of one observable's noise.
@@ -17,8 +19,8 @@ struct NoiseParameters {
 /// How many of the four an observable's noise has free.
 int noise_parameters(const Observable& observable);
 double& noise_parameter(NoiseParameters& noise, int index);
-/// Bounds of the three, by kind of noise.
-void noise_bounds(NoiseKind kind, int index, double& low, double& high);
+/// Least and most of each, by kind of noise.
+std::pair<double, double> noise_bounds(NoiseKind kind, int index);
 
 /// Robust first guess from the residuals of a prediction.
 NoiseParameters first_guess(const Observable& observable, const Predicted& predicted);
@@ -29,7 +31,6 @@ class RowSize {
     /// Keeps references to `predicted`.
     RowSize(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise);
     double at(std::size_t i) const { return even_ ? sd_ : of(i); }
-    bool even() const { return even_; }  ///< the same in all rows
 
   private:
     double of(std::size_t i) const;
@@ -38,7 +39,11 @@ class RowSize {
     double own_, tail_, rounding_, sd_ = 0.0;
     bool even_;
 };
+/// Of an Event the sd of what happens or not.
 double row_sd(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
               std::size_t i);
+
+/// Is a sum's own noise so much less than its rounding that its rows show the rounding only?
+bool is_rounding(const Observable& observable, const NoiseParameters& noise);
 
 }  // namespace puckloop::gap

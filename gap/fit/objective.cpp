@@ -1,7 +1,5 @@
 #include "gap/fit/objective.h"
 
-#include "gap/fit/prior.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -34,8 +32,7 @@ Objective::Objective(const Model& model, const Layout& layout, State base, const
       state_(std::move(base)),
       weights_(weights),
       bases_(model.observables().size()),
-      columns_(bases_.size()),
-      used_(bases_.size()) {}
+      columns_(bases_.size()) {}
 
 double Objective::fill(std::size_t o) {
     Base& base = bases_[o];
@@ -73,7 +70,7 @@ double Objective::value(const double* x) {
 void Objective::take_differences(std::size_t o, const std::vector<Moved>& moved) {
     if (moved.empty()) return;
     const Observable& observable = model_.observables()[o];
-    const bool together = moved.size() > 1 && std::all_of(moved.begin(), moved.end(), [&](const Moved& one) {
+    const bool together = moved.size() > 1 && std::ranges::all_of(moved, [&](const Moved& one) {
                               return is_plain_sum(observable, *one.predicted);
                           });
     if (together) {
@@ -97,8 +94,7 @@ void Objective::take_differences(std::size_t o, const std::vector<Moved>& moved)
 void Objective::difference(std::size_t o, const Moved& moved, const Innovations& other) {
     const Observable& observable = model_.observables()[o];
     Base& base = bases_[o];
-    if (columns_[o].size() <= used_[o]) columns_[o].emplace_back();
-    Column& column = columns_[o][used_[o]++];
+    Column& column = columns_[o].emplace_back();
     column.number = moved.number;
     const bool simple = is_simple(*moved.predicted) && is_simple(prediction_[o]);
     if (!simple) {
@@ -135,9 +131,8 @@ void Objective::difference(std::size_t o, const Moved& moved, const Innovations&
 /// Adds one observable's part.
 void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const {
     const Base& base = bases_[o];
-    const std::size_t count = used_[o];
-    const auto n = as_index(base.slope.size()), width = as_index(count);
-    if (count == 0) return;
+    const auto n = as_index(base.slope.size()), width = as_index(columns_[o].size());
+    if (width == 0) return;
     Eigen::VectorXd weights(n), bend(n);
     for (std::size_t i = 0; i < base.slope.size(); ++i) {
         weights[as_index(i)] = weight(o, i);
@@ -192,8 +187,7 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
 /// own gradient is its information (the outer product: Berndt, Hall, Hall and Hausman 1974).
 void Objective::gather_mixed(std::size_t o, const Eigen::VectorXd& weights, Eigen::VectorXd& gradient,
                              Eigen::MatrixXd& curvature) const {
-    const std::size_t count = used_[o];
-    for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t a = 0; a < columns_[o].size(); ++a) {
         const Column& one = columns_[o][a];
         gradient[as_index(one.number)] += one.gradient.dot(weights);
         for (std::size_t b = 0; b <= a; ++b) {
@@ -219,13 +213,11 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
         base.cost.clear();
         slopes_of(model_.observables()[o], state_.noise[o], base.innovations, base.slope, base.curvature);
         tail_slopes_of(state_.noise[o], base.innovations, base.tail);
-        used_[o] = 0;
+        columns_[o].clear();
     }
     std::vector<double> near(x, x + width);
     const auto move = [&](std::size_t j, double by) {
-        double low = 0, high = 0;
-        layout_.bounds(j, low, high);
-        const double step = x[j] + by > high ? -by : by;
+        const double step = x[j] + by > layout_.bounds(j).second ? -by : by;
         near[j] = x[j] + step;
         layout_.unpack(near.data(), state_);
         near[j] = x[j];
@@ -275,8 +267,8 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
     *rows = Eigen::MatrixXd::Zero(all, as_index(width));
     for (std::size_t o = 0; o < bases_.size(); ++o) {
         const auto n = as_index(bases_[o].slope.size());
-        for (std::size_t k = 0; k < used_[o]; ++k)
-            rows->col(as_index(columns_[o][k].number)).segment(first, n) = columns_[o][k].gradient;
+        for (const Column& column : columns_[o])
+            rows->col(as_index(column.number)).segment(first, n) = column.gradient;
         first += n;
     }
     return sum;

@@ -9,9 +9,25 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace puckloop::gap {
+
+// The weak prior of a freed parameter: Student's t with two degrees of freedom, so that a value far out that
+// the data knows well is not pulled back, as a normal prior would.
+
+/// Minus its log without constants, `x` prior widths from the centre.
+inline double prior_cost(double x) {
+    return 1.5 * std::log1p(x * x / 2);
+}
+inline double prior_slope(double x) {
+    return 3 * x / (2 + x * x);
+}
+/// Of the parabola with this slope that lies above the cost elsewhere: never negative.
+inline double prior_curvature(double x) {
+    return 3 / (2 + x * x);
+}
 
 /// How far the noise is from what the simulator claims, in units of the claim's own doubt.
 double claim_error(const Observable& observable, const NoiseParameters& noise);
@@ -69,7 +85,6 @@ class Objective {
     std::vector<Base> bases_;
     std::vector<NoiseParameters> base_noise_;   ///< that the bases' derivatives are taken at
     std::vector<std::vector<Column>> columns_;  ///< an observable each
-    std::vector<std::size_t> used_;             ///< how many of its columns are in use
     std::array<Innovations, kLanes> other_;
     std::vector<double> other_cost_;
 };

@@ -3,6 +3,7 @@
 #include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit/parallel.h"
+#include "gap/stats/series.h"
 
 #include <fmt/format.h>
 
@@ -16,12 +17,8 @@ namespace puckloop::gap {
 
 namespace {
 
-using thresholds::kClearBic;
-using thresholds::kDraw;
-using thresholds::kNoRival;
-using thresholds::kPromising;
-using thresholds::kScreen;
-using thresholds::kTie;
+using namespace thresholds;
+using stats::contains;
 
 // How much is looked at.
 constexpr std::size_t kMostEffects = 5;
@@ -32,10 +29,6 @@ constexpr double kHopeless = 60.0;        // of BIC, by a quick fit: not fitted 
 constexpr double kGlimpse = 0.125;        // of kPromising, nats that a pair wins at a glance (half is due)
 constexpr std::size_t kPaired = 6;        // best alone that are tried two by two where none is enough
 constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
-
-bool has(const std::vector<std::size_t>& set, std::size_t effect) {
-    return std::find(set.begin(), set.end(), effect) != set.end();
-}
 
 /// The chosen set with `effect` replaced by `rival` (put last, so that its starts are tried).
 std::vector<std::size_t> replaced(std::vector<std::size_t> set, std::size_t effect, std::size_t rival) {
@@ -57,8 +50,7 @@ struct TriedSet {
 };
 
 void best_first(std::vector<TriedSet>& all) {
-    std::stable_sort(all.begin(), all.end(),
-                     [](const TriedSet& a, const TriedSet& b) { return a.won > b.won; });
+    std::ranges::stable_sort(all, std::ranges::greater{}, &TriedSet::won);
 }
 
 }  // namespace
@@ -116,14 +108,11 @@ class Search::Steps {
     std::vector<std::size_t> others_than(const std::vector<std::size_t>& set) const {
         std::vector<std::size_t> others;
         for (std::size_t i = 0; i < study_.candidates().size(); ++i)
-            if (candidate(i).remark.empty() && !has(set, i)) others.push_back(i);
+            if (candidate(i).remark.empty() && !contains(set, i)) others.push_back(i);
         return others;
     }
 
-    /// What `better` gains over `before` on rows that were not fitted.
-    Gain gain(const HeldOut& before, const HeldOut& better) const {
-        return gain_of(gains_by_block(study_.blocks(), before, better));
-    }
+    Gain gain(const HeldOut& before, const HeldOut& better) const { return study_.gain(before, better); }
 
     void choose(Fit fit, HeldOut held) {
         result_.chosen = std::move(fit);
@@ -157,7 +146,7 @@ class Search::Steps {
         const auto known = alone_state_.find(effect);
         if (known == alone_state_.end()) return state;
         for (const Freed& freed : candidate(effect).freed) {
-            const auto index = static_cast<std::size_t>(freed.index);
+            const auto index = freed.index;
             if (state.values[index] == study_.model().parameters()[index].neutral)
                 state.values[index] = known->second[index];
         }
@@ -206,8 +195,8 @@ class Search::Steps {
         HeldOut held = study_.hold_out(both);
         if (!enough(gain(result_.held_chosen, held), 2)) return false;
         for (const std::size_t effect : both.effects) {
-            const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const TriedSet& one) {
-                return one.effect() != effect && has(both.effects, one.effect());
+            const auto alone = std::ranges::find_if(last_step_, [&](const TriedSet& one) {
+                return one.effect() != effect && contains(both.effects, one.effect());
             });
             result_.steps.push_back(
                 {effect, alone->fit.bic - both.bic, gain(study_.hold_out(alone->fit), held), true, ""});
@@ -303,8 +292,7 @@ class Search::Steps {
         std::vector<std::size_t> order, taken;
         for (std::size_t k = 0; k < tried.size(); ++k)
             (fits[k].effects.empty() ? taken : order).push_back(k);
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::size_t a, std::size_t b) { return fits[a].bic < fits[b].bic; });
+        std::ranges::stable_sort(order, {}, [&](std::size_t k) { return fits[k].bic; });
         const double rows = static_cast<double>(study_.rows()), few = static_cast<double>(part.rows());
         for (const std::size_t k : order) {
             if (taken.size() < kLookedAt) {
@@ -319,7 +307,7 @@ class Search::Steps {
             if (!trial.validated) trial.delta_bic = delta;
             if (chosen.effects.empty()) alone_[tried[k]] = delta;
         }
-        std::sort(taken.begin(), taken.end());
+        std::ranges::sort(taken);
         std::vector<std::size_t> result;
         for (const std::size_t k : taken)
             result.push_back(tried[k]);
@@ -424,8 +412,7 @@ class Search::Steps {
         const auto rank = [](const Draw& draw) {
             return std::pair(std::max(draw.delta_bic, kTie), draw.delta_bic < kTie ? draw.rival : 0);
         };
-        std::stable_sort(result_.draws.begin(), result_.draws.end(),
-                         [&](const Draw& a, const Draw& b) { return rank(a) < rank(b); });
+        std::ranges::stable_sort(result_.draws, {}, rank);
     }
 
     /// The last step has tried `rival` in the place of the last choice.
@@ -445,9 +432,8 @@ class Search::Steps {
     /// Does `outer` fit all parameters that `inner` fits? Then it can predict the same, with more parameters.
     bool nested(std::size_t outer, std::size_t inner) const {
         const auto &a = candidate(outer).freed, &b = candidate(inner).freed;
-        return std::all_of(b.begin(), b.end(), [&](const Freed& one) {
-            return std::any_of(a.begin(), a.end(),
-                               [&](const Freed& other) { return other.index == one.index; });
+        return std::ranges::all_of(b, [&](const Freed& one) {
+            return std::ranges::any_of(a, [&](const Freed& other) { return other.index == one.index; });
         });
     }
 
@@ -467,7 +453,6 @@ class Search::Steps {
 Search::Search(const Study& study, const Progress& progress)
     : steps_(std::make_unique<Steps>(study, progress)) {}
 Search::~Search() = default;
-Search::Search(Search&&) noexcept = default;
 double Search::first() {
     return steps_->first();
 }
@@ -477,14 +462,6 @@ Selection Search::rest() {
 
 void Search::find_rivals(Selection& selection) {
     steps_->find_rivals(selection);
-}
-
-Selection select(const Study& study, const Search::Progress& progress) {
-    Search search(study, progress);
-    (void)search.first();
-    Selection selection = search.rest();
-    search.find_rivals(selection);
-    return selection;
 }
 
 }  // namespace puckloop::gap

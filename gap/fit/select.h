@@ -44,7 +44,6 @@ class Search {
     /// `study` and `progress` must outlive it.
     Search(const Study& study, const Progress& progress);
     ~Search();
-    Search(Search&&) noexcept;
 
     /// The first step: nothing, or the best effect (or pair). Returns the log score of all held-out rows.
     double first();
@@ -57,7 +56,5 @@ class Search {
     class Steps;
     std::unique_ptr<Steps> steps_;
 };
-
-Selection select(const Study& study, const Search::Progress& progress);
 
 }  // namespace puckloop::gap

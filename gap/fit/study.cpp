@@ -54,8 +54,8 @@ std::string design_of(Kind kind, const Run& run) {
 }
 
 /// One effect's parameter on one index of the model.
-Freed freed_at(const Model& model, const EffectParameter& parameter, int index) {
-    const double neutral = model.parameters()[static_cast<std::size_t>(index)].neutral;
+Freed freed_at(const Model& model, const EffectParameter& parameter, std::size_t index) {
+    const double neutral = model.parameters()[index].neutral;
     Freed freed{index,   parameter.low,        parameter.high,     parameter.prior_sd,
                 neutral, parameter.resolution, parameter.threshold};
     if (neutral < parameter.low || neutral > parameter.high) {
@@ -74,8 +74,6 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, int index) 
 
 Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads, MotionView view)
     : experiment_(experiment), view_(view), model_(make_model(experiment, view)), threads_(threads) {
-    for (const Observable& observable : model_->observables())
-        rows_ += observable.y.size();
     make_candidates();
     make_folds(seed);
     if (experiment.rows() > kManyRows) make_part();
@@ -83,8 +81,6 @@ Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads,
 
 Study::Study(std::unique_ptr<Experiment> thin, const Study& whole)
     : own_(std::move(thin)), experiment_(*own_), view_(whole.view_), model_(make_model(experiment_, view_)) {
-    for (const Observable& observable : model_->observables())
-        rows_ += observable.y.size();
     take_candidates(whole);
 }
 
@@ -109,9 +105,9 @@ void Study::take_candidates(const Study& whole) {
         own.starts.resize(theirs.starts.size());
         for (std::size_t j = 0; j < theirs.freed.size(); ++j) {
             Freed freed = theirs.freed[j];
-            freed.index =
-                model_->find(whole.model_->parameters()[static_cast<std::size_t>(freed.index)].name);
-            if (freed.index < 0) continue;
+            const auto index = model_->find(whole.model_->parameters()[freed.index].name);
+            if (!index) continue;
+            freed.index = *index;
             own.freed.push_back(freed);
             for (std::size_t k = 0; k < theirs.starts.size(); ++k)
                 own.starts[k].push_back(theirs.starts[k][j]);
@@ -124,8 +120,7 @@ void Study::take_candidates(const Study& whole) {
 State Study::in_part(const State& whole) const {
     State part{part_->model().neutral(), whole.noise};
     for (std::size_t i = 0; i < place_in_part_.size(); ++i)
-        if (place_in_part_[i] >= 0)
-            part.values[static_cast<std::size_t>(place_in_part_[i])] = whole.values[i];
+        if (place_in_part_[i]) part.values[*place_in_part_[i]] = whole.values[i];
     return part;
 }
 
@@ -140,8 +135,7 @@ Fit Study::on_part(const Fit& whole) const {
 Fit Study::from_part(const Fit& guess, const State& from, const Effort& effort) const {
     State begin{from.values, guess.fitted.state.noise};
     for (std::size_t i = 0; i < place_in_part_.size(); ++i)
-        if (place_in_part_[i] >= 0)
-            begin.values[i] = guess.fitted.state.values[static_cast<std::size_t>(place_in_part_[i])];
+        if (place_in_part_[i]) begin.values[i] = guess.fitted.state.values[*place_in_part_[i]];
     Fit whole;
     whole.effects = guess.effects;
     whole.freed = freed_by(guess.effects);
@@ -164,8 +158,7 @@ std::string Study::missing_for(const Effect& effect) const {
 
 /// Does any prediction change with the candidate's parameters, near neutral or where a fit begins?
 bool Study::matters(const Candidate& candidate) const {
-    Prediction neutral, moved;
-    model_->predict(model_->neutral(), neutral);
+    const Prediction neutral = model_->predicted(model_->neutral());
     auto places = candidate.starts;
     for (const double sign : {1.0, -1.0}) {
         std::vector<double> place;
@@ -173,12 +166,11 @@ bool Study::matters(const Candidate& candidate) const {
             place.push_back(std::clamp(one.centre + sign * one.prior_sd, one.low, one.high));
         places.push_back(std::move(place));
     }
-    return std::any_of(places.begin(), places.end(), [&](const std::vector<double>& place) {
+    return std::ranges::any_of(places, [&](const std::vector<double>& place) {
         std::vector<double> values = model_->neutral();
         for (std::size_t j = 0; j < place.size(); ++j)
-            values[static_cast<std::size_t>(candidate.freed[j].index)] = place[j];
-        model_->predict(values, moved);
-        return moved != neutral;
+            values[candidate.freed[j].index] = place[j];
+        return model_->predicted(values) != neutral;
     });
 }
 
@@ -190,13 +182,12 @@ void Study::make_candidates() {
         std::vector<std::vector<double>> own;  // starts of each freed parameter
         std::size_t rounds = 1;
         for (const EffectParameter& parameter : effect->parameters) {
-            if (parameter.unless != nullptr && model_->find(parameter.unless) >= 0) continue;
-            for (const int index : model_->matching(parameter.name)) {
+            if (parameter.unless != nullptr && model_->find(parameter.unless)) continue;
+            for (const std::size_t index : model_->matching(parameter.name)) {
                 candidate.freed.push_back(freed_at(*model_, parameter, index));
                 own.push_back(parameter.starts);
                 if (candidate.remark.empty())
-                    for (const double start :
-                         model_->starts(model_->parameters()[static_cast<std::size_t>(index)].name))
+                    for (const double start : model_->starts(model_->parameters()[index].name))
                         own.back().push_back(start);
                 rounds = std::max(rounds, own.back().size());
             }
@@ -229,7 +220,7 @@ void Study::make_folds(std::uint64_t seed) {
     std::vector<std::string> design;
     for (const Run& run : experiment_.runs)
         design.push_back(design_of(experiment_.kind, run));
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
         return std::tie(experiment_.runs[a].conditions, design[a]) <
                std::tie(experiment_.runs[b].conditions, design[b]);
     });
@@ -259,8 +250,7 @@ std::vector<Freed> Study::freed_by(const std::vector<std::size_t>& effects) cons
     std::vector<Freed> all;
     for (const std::size_t e : effects)
         for (const Freed& freed : candidates_[e].freed) {
-            if (std::none_of(all.begin(), all.end(),
-                             [&](const Freed& other) { return other.index == freed.index; }))
+            if (std::ranges::none_of(all, [&](const Freed& other) { return other.index == freed.index; }))
                 all.push_back(freed);
         }
     return all;
@@ -302,7 +292,7 @@ State Study::begun(const Candidate& candidate, const std::vector<double>& start,
         State state = from;
         bool moved = false;
         for (std::size_t j = 0; j < candidate.freed.size(); ++j) {
-            const auto index = static_cast<std::size_t>(candidate.freed[j].index);
+            const auto index = candidate.freed[j].index;
             const double neutral = model_->parameters()[index].neutral;
             const bool scalable = neutral >= candidate.freed[j].low && neutral <= candidate.freed[j].high;
             state.values[index] = scalable ? neutral + share * (start[j] - neutral) : start[j];
@@ -353,8 +343,8 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
         if (lighten_tails(state)) take_better(fit(*model_, best.freed, state, {}, kPart).state, kQuick);
     }
     // Where another effect was dropped or replaced, this one already stands somewhere.
-    const bool stands = std::any_of(last.freed.begin(), last.freed.end(), [&](const Freed& freed) {
-        const auto index = static_cast<std::size_t>(freed.index);
+    const bool stands = std::ranges::any_of(last.freed, [&](const Freed& freed) {
+        const auto index = freed.index;
         return from.values[index] != model_->parameters()[index].neutral;
     });
     if (stands) take_better(from, kQuick);
@@ -380,7 +370,7 @@ double Study::glance(const std::vector<std::size_t>& effects, const State& from)
 
 State Study::without(std::size_t effect, State state) const {
     for (const Freed& freed : candidates_[effect].freed) {
-        const auto index = static_cast<std::size_t>(freed.index);
+        const auto index = freed.index;
         state.values[index] = model_->parameters()[index].neutral;
     }
     return state;
@@ -406,9 +396,16 @@ Fit Study::refined(const Fit& quick) const {
     return fit_again;
 }
 
+std::size_t Study::rows() const {
+    std::size_t sum = 0;
+    for (const Observable& observable : model_->observables())
+        sum += observable.y.size();
+    return sum;
+}
+
 double Study::bic_of(const Fitted& fitted, std::size_t parameters) const {
     return -2 * fitted.log_likelihood +
-           static_cast<double>(parameters) * std::log(static_cast<double>(std::max<std::size_t>(rows_, 2)));
+           static_cast<double>(parameters) * std::log(static_cast<double>(std::max<std::size_t>(rows(), 2)));
 }
 
 HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
@@ -419,14 +416,9 @@ HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
         held.mean.emplace_back(observable.y.size(), 0.0);
     }
     in_parallel(folds_, threads_, [&](std::size_t k) {
-        Weights weights;
-        for (const auto& fold : fold_) {
-            weights.emplace_back();
-            for (const int f : fold)
-                weights.back().push_back(f == static_cast<int>(k) ? 0.0 : 1.0);
-        }
+        const auto weights = rows_of_parts([&](int fold) { return fold != static_cast<int>(k); });
         const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, effort);
-        Prediction prediction;
+        const Prediction prediction = model_->predicted(part.state.values);
         const auto costs = costs_at(*model_, part.state, prediction);
         // What the noise loses for being off the simulator's claim is lost by every row alike.
         std::vector<double> off;
@@ -443,12 +435,24 @@ HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
     return held;
 }
 
-std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, const HeldOut& after) {
-    std::vector<double> gains(blocks.count, 0.0);
-    for (std::size_t o = 0; o < blocks.of.size(); ++o)
-        for (std::size_t i = 0; i < blocks.of[o].size(); ++i)
-            gains[blocks.of[o][i]] += after.score[o][i] - before.score[o][i];
-    return gains;
+void Study::add_gains(const HeldOut& before, const HeldOut& after, std::size_t observable,
+                      std::vector<double>& by_block) const {
+    const auto& block = blocks_.of[observable];
+    for (std::size_t i = 0; i < block.size(); ++i)
+        by_block[block[i]] += after.score[observable][i] - before.score[observable][i];
+}
+
+Gain Study::gain(const HeldOut& before, const HeldOut& after, std::size_t observable) const {
+    std::vector<double> by_block(blocks_.count, 0.0);
+    add_gains(before, after, observable, by_block);
+    return gain_of(by_block);
+}
+
+Gain Study::gain(const HeldOut& before, const HeldOut& after) const {
+    std::vector<double> by_block(blocks_.count, 0.0);
+    for (std::size_t o = 0; o < blocks_.of.size(); ++o)
+        add_gains(before, after, o, by_block);
+    return gain_of(by_block);
 }
 
 }  // namespace puckloop::gap

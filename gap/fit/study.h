@@ -49,7 +49,7 @@ class Study {
     const Model& model() const { return *model_; }
     MotionView view() const { return view_; }
     const std::vector<Candidate>& candidates() const { return candidates_; }
-    std::size_t rows() const { return rows_; }
+    std::size_t rows() const;  ///< of all observables
     std::size_t folds() const { return folds_; }
     const Blocks& blocks() const { return blocks_; }
     unsigned threads() const { return threads_; }
@@ -80,6 +80,20 @@ class Study {
     /// Cross-validation of a set that was fitted to all rows, each part fitted again with `effort` from
     /// there.
     HeldOut hold_out(const Fit& fit, const Effort& effort = kPart) const;
+    /// What `after` gains over `before` on rows that were not fitted, of all observables or of one.
+    Gain gain(const HeldOut& before, const HeldOut& after) const;
+    Gain gain(const HeldOut& before, const HeldOut& after, std::size_t observable) const;
+    /// Weights that are 1 for the rows of some parts only: `in(part)`.
+    template <class In>
+    Weights rows_of_parts(const In& in) const {
+        Weights weights;
+        for (const auto& folds : fold_) {
+            weights.emplace_back();
+            for (const int fold : folds)
+                weights.back().push_back(in(fold) ? 1.0 : 0.0);
+        }
+        return weights;
+    }
 
   private:
     /// The part of `whole`.
@@ -93,6 +107,8 @@ class Study {
     double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
     bool matters(const Candidate& candidate) const;
+    void add_gains(const HeldOut& before, const HeldOut& after, std::size_t observable,
+                   std::vector<double>& by_block) const;
     std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
 
     std::unique_ptr<Experiment> own_;  // of a part
@@ -100,15 +116,12 @@ class Study {
     MotionView view_;
     std::unique_ptr<Model> model_;
     std::unique_ptr<Study> part_;
-    std::vector<int> place_in_part_;  // of each parameter; -1: the part does not have it
+    std::vector<std::optional<std::size_t>> place_in_part_;  // of each parameter, where the part has it
     std::vector<Candidate> candidates_;
     std::vector<std::vector<int>> fold_;  // of each row, an observable each
     Blocks blocks_;
-    std::size_t rows_ = 0, folds_ = 0;
+    std::size_t folds_ = 0;
     unsigned threads_ = 1;
 };
-
-/// Sum over rows of `after` - `before`, block by block.
-std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, const HeldOut& after);
 
 }  // namespace puckloop::gap

@@ -18,7 +18,6 @@ SumResponse::SumResponse(const Observable& observable, const Predicted& predicte
     filter(observable, calm, noise, innovations, &gain_);
     role_.assign(n, Role::Silent);
     z_.assign(n, std::numeric_limits<double>::quiet_NaN());
-    log_sd_.assign(n, 0.0);
     sd_.assign(n, 1.0);
     bool begun = false;
     for (std::size_t i = 0; i < n; ++i) {
@@ -32,7 +31,6 @@ SumResponse::SumResponse(const Observable& observable, const Predicted& predicte
         if (role_[i] == Role::Begins) continue;
         z_[i] = innovations.z[i];
         sd_[i] = std::sqrt(innovations.variance[i]);
-        log_sd_[i] = std::log(sd_[i]);
     }
 }
 

@@ -18,8 +18,6 @@ class SumResponse {
 
     /// Standardised innovations; NaN where a row says nothing.
     const std::vector<double>& innovations() const { return z_; }
-    /// ln of each innovation's sd, in the observable's unit.
-    const std::vector<double>& log_sd() const { return log_sd_; }
 
     /// Row i adds `amount[i]` (the observable's unit; what a chain's first row adds is not seen) to the sum
     /// if it lies in a cell. Calls `take(i, answers)` for every row that says something, with an answer for
@@ -49,7 +47,7 @@ class SumResponse {
     enum class Role : char { Silent, Begins, Follows };
     double memory_;
     std::vector<Role> role_;
-    std::vector<double> z_, log_sd_, sd_, gain_;
+    std::vector<double> z_, sd_, gain_;
 };
 
 }  // namespace puckloop::gap

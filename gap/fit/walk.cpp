@@ -38,8 +38,7 @@ PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, doubl
             innovations += history.weight * z;
             next_.push_back(history);
         }
-    std::sort(next_.begin(), next_.end(),
-              [](const History& a, const History& b) { return a.weight > b.weight; });
+    std::ranges::sort(next_, std::ranges::greater{}, &History::weight);
     if (next_.size() > kHistories) next_.resize(kHistories);
     while (next_.size() > 1 && next_.back().weight < kForgotten * next_.front().weight)
         next_.pop_back();

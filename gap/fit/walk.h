@@ -3,7 +3,6 @@
 // Variances in units of the error's.
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -8,6 +8,7 @@
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/series.h"
 #include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
@@ -24,15 +25,14 @@ namespace {
 constexpr std::size_t kTrace = 30;    // rows after which a filter has settled
 constexpr std::size_t kSettled = 10;  // the last of them
 
-struct Chain {
-    std::size_t first, last;  ///< [first, last)
-    std::size_t size() const { return last - first; }
-};
+/// Rows of a run that follow each other.
+using Chain = stats::Stretch;
 
 std::vector<Chain> chains_of(const Observable& o) {
     std::vector<Chain> chains;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
-        if (i == 0 || o.starts[i] != 0 || o.run[i] != o.run[i - 1]) chains.push_back({i, i});
+        if (i == 0 || o.starts[i] != 0 || o.run[i] != o.run[i - 1])
+            chains.push_back({i, i, static_cast<int>(o.run[i])});
         chains.back().last = i + 1;
     }
     return chains;
@@ -56,7 +56,7 @@ std::vector<double> trace_of(const Observable& o, const Predicted& p, const Nois
 std::vector<double> errors_of(const Observable& o, const Predicted& p, const NoiseParameters& noise) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
-        const bool clipped = o.y[i] <= o.instrument.floor || o.y[i] >= o.instrument.ceiling;
+        const bool clipped = o.instrument.at_end(o.y[i]);
         errors.push_back(clipped ? 0.0 : (o.y[i] - p.mean[i]) / row_sd(o, p, noise, i));
     }
     const double limit = thresholds::kJumpTrim * stats::robust_scale(errors), middle = stats::median(errors);
@@ -96,7 +96,7 @@ double tail_of_highest(double most, std::vector<double> highest) {
     double scale = thresholds::kSquareScale, half = 0.0;
     const std::size_t n = highest.size();
     if (n >= thresholds::kJumpChains) {
-        std::sort(highest.begin(), highest.end());
+        std::ranges::sort(highest);
         const double quarter = highest[n / 4], three = highest[3 * n / 4];
         half = highest[n / 2];
         scale = std::max(
@@ -157,18 +157,15 @@ class Scan {
 }  // namespace
 
 std::vector<ChangePoint> change_points(const Model& model, const State& state) {
-    Prediction prediction;
-    model.predict(state.values, prediction);
+    const Prediction prediction = model.predicted(state.values);
     std::vector<ChangePoint> all;
     for (std::size_t k = 0; k < model.observables().size(); ++k) {
         const Observable& o = model.observables()[k];
         if (o.fixed_sd > 0 || o.noise == NoiseKind::Event) continue;
-        if (o.noise == NoiseKind::Level &&
-            std::exp(state.noise[k].log_sd) < thresholds::kFineNoise * o.instrument.quantum)
-            continue;
+        if (is_rounding(o, state.noise[k])) continue;
         const auto chains = chains_of(o);
-        const auto longest = std::max_element(
-            chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.size() < b.size(); });
+        const auto longest = std::ranges::max_element(
+            chains, [](const Chain& a, const Chain& b) { return a.size() < b.size(); });
         if (longest == chains.end() || longest->size() < thresholds::kJumpChain) continue;
         const bool sum = o.noise == NoiseKind::Level;
         const Scores scores(o, prediction[k], state.noise[k]);
@@ -212,8 +209,7 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
     // One look at each observable.
     for (ChangePoint& point : all)
         point.p_value = std::min(1.0, point.p_value * static_cast<double>(all.size()));
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
+    std::ranges::stable_sort(all, {}, &ChangePoint::p_value);
     return all;
 }
 

@@ -1,5 +1,6 @@
 #include "gap/fit_test/rival_forms.h"
 
+#include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/robust.h"
@@ -122,9 +123,7 @@ std::vector<double> flat(const std::vector<Part>& parts, std::size_t form) {
 }  // namespace
 
 std::vector<RivalForm> rival_forms(const Study& study, const Fit& fit, std::size_t effect) {
-    Prediction with, without;
-    study.model().predict(fit.fitted.state.values, with);
-    study.model().predict(study.without(effect, fit.fitted.state).values, without);
+    const auto [with, without] = contrast(study, fit, effect);
     std::vector<Part> parts;
     for (std::size_t k = 0; k < with.size(); ++k) {
         const Observable& o = study.model().observables()[k];

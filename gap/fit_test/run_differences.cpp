@@ -1,6 +1,6 @@
 #include "gap/fit_test/run_differences.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/criterion.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tails.h"
@@ -176,12 +176,9 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
                      fixed = runs[r].estimate() - common_of(runs, scores.spread, 0.0, r).mean;
         gains.push_back(log_normal(random, tau * tau + own) - log_normal(fixed, own));
     }
-    double squares = 0.0;
-    for (const double gain : gains)
-        result.gain += gain;
-    for (const double gain : gains)
-        squares += std::pow(gain - result.gain / static_cast<double>(n), 2);
-    result.sd = std::sqrt(squares * static_cast<double>(n) / static_cast<double>(n - 1));
+    const Gain gain = gain_of(gains);
+    result.gain = gain.sum;
+    result.sd = gain.sd;
     result.size = best_tau(runs, scores.spread, n);
     const double middle = common_of(runs, scores.spread, 0.0, n).mean;
     double between = 0.0, low = INFINITY, high = -INFINITY;
@@ -198,28 +195,21 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     return result;
 }
 
-bool is_asked(const Observable& o, const NoiseParameters& noise) {
-    const bool rounding =
-        o.noise == NoiseKind::Level && std::exp(noise.log_sd) < thresholds::kFineNoise * o.instrument.quantum;
-    return o.fixed_sd <= 0 && !o.y.empty() && !rounding;
-}
-
 }  // namespace
 
 std::vector<RunDifference> run_differences(const Model& model, const State& state) {
-    Prediction prediction;
-    model.predict(state.values, prediction);
+    const Prediction prediction = model.predicted(state.values);
     std::vector<RunDifference> all;
     for (std::size_t k = 0; k < model.observables().size(); ++k) {
         const Observable& o = model.observables()[k];
-        if (!is_asked(o, state.noise[k])) continue;
+        if (o.fixed_sd > 0 || o.y.empty() || is_rounding(o, state.noise[k])) continue;
         const Scores scores(o, prediction[k], state.noise[k]);
         std::vector<std::vector<double>> drawn, seen;
         for (const auto& one : o.run_draws)
             drawn.push_back(scores.answers(one));
         for (const Mode& mode : modes_of(o, prediction[k])) {
             auto answers = scores.answers(mode.shift);
-            if (std::any_of(seen.begin(), seen.end(), [&](const auto& other) {
+            if (std::ranges::any_of(seen, [&](const auto& other) {
                     return std::abs(stats::correlation(other, answers)) > kSameShape;
                 }))
                 continue;
@@ -228,7 +218,7 @@ std::vector<RunDifference> run_differences(const Model& model, const State& stat
             seen.push_back(std::move(answers));
         }
     }
-    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+    std::ranges::stable_sort(all, std::ranges::greater{}, &RunDifference::gain);
     return all;
 }
 

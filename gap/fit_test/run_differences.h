@@ -11,7 +11,6 @@
 #include "gap/fit/fit.h"
 #include "gap/models/model.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>

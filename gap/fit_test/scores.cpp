@@ -12,17 +12,16 @@ constexpr double kFar = 1e4;         // an innovation moved by so many steps met
 
 Scores::Scores(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise)
     : observable_(observable), predicted_(predicted), noise_(noise) {
-    Innovations innovations;
-    filter(observable, predicted, noise, innovations);
+    filter(observable, predicted, noise, filtered_);
     const bool event = observable.noise == NoiseKind::Event;
     const double nu = std::exp(noise.log_tail);
     curvature_ = event ? 1.0 : (nu + 1) / (nu + 3);
     for (std::size_t i = 0; i < observable.y.size(); ++i) {
-        const double z = innovations.z[i];
+        const double z = filtered_.z[i];
         double innovation = 0.0, pull = 0.0;
-        if (innovations.role[i] == RowRole::Event) {
+        if (filtered_.role[i] == RowRole::Event) {
             innovation = pull = ((observable.y[i] > 0.5 ? 1.0 : 0.0) - z) / std::sqrt(z * (1 - z));
-        } else if (innovations.role[i] == RowRole::Plain && std::isfinite(z)) {
+        } else if (filtered_.role[i] == RowRole::Plain && std::isfinite(z)) {
             innovation = z;
             pull = (nu + 1) * z / (nu + z * z);
         }
@@ -49,12 +48,11 @@ std::vector<double> Scores::answers(const std::vector<double>& shift) const {
     Predicted moved = predicted_;
     for (std::size_t i = 0; i < n; ++i)
         moved.mean[i] += step * shift[i];
-    Innovations before, after;
-    filter(observable_, predicted_, noise_, before);
+    Innovations after;
     filter(observable_, moved, noise_, after);
     for (std::size_t i = 0; i < n; ++i) {
-        if (before.role[i] != RowRole::Plain || after.role[i] != RowRole::Plain) continue;
-        const double moved_by = before.z[i] - after.z[i];
+        if (filtered_.role[i] != RowRole::Plain || after.role[i] != RowRole::Plain) continue;
+        const double moved_by = filtered_.z[i] - after.z[i];
         if (std::isfinite(moved_by) && std::abs(moved_by) < kFar * kSmallStep) answer[i] = moved_by / step;
     }
     return answer;

@@ -30,6 +30,7 @@ class Scores {
     const Observable& observable_;
     const Predicted& predicted_;
     NoiseParameters noise_;
+    Innovations filtered_;
     std::vector<double> innovation_, pull_;
     double curvature_ = 1.0;
 };

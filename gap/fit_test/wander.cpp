@@ -23,12 +23,11 @@ constexpr Effort kAgain{.iterations = 12}, kCalmAgain{.iterations = 12, .wander 
 Fit calmed(const Study& study, const Fit& fit) {
     State state = fit.fitted.state;
     for (std::size_t o = 0; o < state.noise.size(); ++o) {
-        if (!study.model().observables()[o].steady) continue;
-        double most = 0.0;
-        noise_bounds(NoiseKind::Level, kDrift, state.noise[o].carry, most);
+        if (study.model().observables()[o].steady)
+            state.noise[o].carry = noise_bounds(NoiseKind::Level, kDrift).first;
     }
     for (const Nuisance& one : study.model().nuisances())
-        if (one.wanders) state.values[static_cast<std::size_t>(one.index)] = one.high;
+        if (one.wanders) state.values[one.index] = one.high;
     Fit calm = fit;
     calm.fitted = gap::fit(study.model(), fit.freed, state, {}, kCalm);
     return calm;
@@ -41,23 +40,19 @@ bool is_clear(const Gain& gain) {
 
 }  // namespace
 
-std::vector<Leftover> wandering(const Study& study, const Fit& fit, double reported) {
+std::vector<Leftover> wandering(const Study& study, const Fit& fit) {
     const auto& observables = study.model().observables();
-    const auto steady = std::count_if(observables.begin(), observables.end(),
-                                      [](const Observable& one) { return one.steady; });
+    const auto steady = std::ranges::count_if(observables, [](const Observable& one) { return one.steady; });
     std::vector<Leftover> all;
     if (steady == 0) return all;
     // How much sums may wander is learnt from the other runs, too: else it would have seen what it predicts.
     const HeldOut held = study.hold_out(fit, kAgain), calm = study.hold_out(calmed(study, fit), kCalmAgain);
     for (std::size_t o = 0; o < observables.size(); ++o) {
         if (!observables[o].steady) continue;
-        std::vector<double> gains(study.blocks().count, 0.0);
-        for (std::size_t i = 0; i < held.score[o].size(); ++i)
-            gains[study.blocks().of[o][i]] += held.score[o][i] - calm.score[o][i];
-        const Gain gain = gain_of(gains);
+        const Gain gain = study.gain(calm, held, o);
         const double p = std::clamp(static_cast<double>(steady) * std::exp(-gain.sum),
                                     std::numeric_limits<double>::min(), 1.0);
-        if (p >= reported || !is_clear(gain)) continue;
+        if (p >= thresholds::kReported || !is_clear(gain)) continue;
         const NoiseParameters& noise = fit.fitted.state.noise[o];
         all.push_back({observables[o].name, kWanderCovariate, p,
                        fmt::format("wanders by {} a row beside what was measured",

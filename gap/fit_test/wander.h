@@ -15,7 +15,7 @@ namespace puckloop::gap {
 inline constexpr const char* kWanderCovariate = "course of a run";
 
 /// Of each steady observable that wanders beside the fit: a structure, p corrected for how many there are.
-/// Those with a p of `reported` or more are left out.
-std::vector<Leftover> wandering(const Study& study, const Fit& fit, double reported);
+/// Only those worth reporting.
+std::vector<Leftover> wandering(const Study& study, const Fit& fit);
 
 }  // namespace puckloop::gap

@@ -65,7 +65,7 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
                                                 : felt[2];
                 double counts = now.zero + now.bias[axis] + now.gain * now.scale[axis] * seen;
                 for (const auto& [session, index] : session_bias_[axis])
-                    if (one.session[i] == session) counts += v[static_cast<std::size_t>(index)];
+                    if (one.session[i] == session) counts += v[index];
                 if (now.warmup != 0.0) counts += now.warmup * warmed(one.time[i], now.warmup_time);
                 p.mean[i] = counts * (1 - now.motor_sag * (one.motor[i] > 0 ? 1.0 : 0.0));
             }
@@ -94,7 +94,7 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
     }
 
     std::array<Axis, 3> axes_;
-    std::array<std::vector<std::pair<double, int>>, 3> session_bias_;
+    std::array<std::vector<std::pair<double, std::size_t>>, 3> session_bias_;
 };
 
 }  // namespace

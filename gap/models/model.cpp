@@ -12,20 +12,28 @@
 
 namespace puckloop::gap {
 
+namespace {
+/// "proximity.gain3" is one of "proximity.gain".
+bool is_numbered(std::string_view name, std::string_view group) {
+    return name.size() > group.size() && name.starts_with(group) &&
+           name.find_first_not_of("0123456789", group.size()) == std::string_view::npos;
+}
+}  // namespace
+
 double shown(const Predicted& predicted, std::size_t i) {
     const double mean = predicted.mean[i];
     if (predicted.floor > 0.0 && mean < predicted.floor) return 0.0;
     return predicted.ceiling > 0.0 ? std::min(mean, predicted.ceiling) : mean;
 }
 
-int Model::find(std::string_view name) const {
+std::optional<std::size_t> Model::find(std::string_view name) const {
     for (std::size_t i = 0; i < parameters_.size(); ++i)
-        if (parameters_[i].name == name) return static_cast<int>(i);
-    return -1;
+        if (parameters_[i].name == name) return i;
+    return std::nullopt;
 }
 
-std::vector<int> Model::matching(std::string_view pattern) const {
-    std::vector<int> found;
+std::vector<std::size_t> Model::matching(std::string_view pattern) const {
+    std::vector<std::size_t> found;
     if (const auto other = pattern.find('|'); other != std::string_view::npos) {
         found = matching(pattern.substr(0, other));
         return found.empty() ? matching(pattern.substr(other + 1)) : found;
@@ -34,25 +42,28 @@ std::vector<int> Model::matching(std::string_view pattern) const {
     if (many) pattern.remove_suffix(1);
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
         const std::string_view name = parameters_[i].name;
-        const bool numbered = many && name.size() > pattern.size() && name.starts_with(pattern) &&
-                              name.find_first_not_of("0123456789", pattern.size()) == std::string_view::npos;
-        if (numbered || (!many && name == pattern)) found.push_back(static_cast<int>(i));
+        if (many ? is_numbered(name, pattern) : name == pattern) found.push_back(i);
     }
     return found;
 }
 
 std::vector<double> Model::neutral() const {
     std::vector<double> values;
-    values.reserve(parameters_.size());
     for (const auto& parameter : parameters_)
         values.push_back(parameter.neutral);
     return values;
 }
 
-int Model::add(std::string name, std::string unit, double neutral) {
+Prediction Model::predicted(const std::vector<double>& values) const {
+    Prediction out;
+    predict(values, out);
+    return out;
+}
+
+std::size_t Model::add(std::string name, std::string unit, double neutral) {
     const bool simulator = overlay_takes(name);
     parameters_.push_back({std::move(name), std::move(unit), neutral, simulator});
-    return static_cast<int>(parameters_.size()) - 1;
+    return parameters_.size() - 1;
 }
 
 void Model::apply_nominal(const Experiment& experiment) {
@@ -60,11 +71,9 @@ void Model::apply_nominal(const Experiment& experiment) {
     for (const auto& [name, value] : experiment.nominal) {
         bool known = false;
         for (auto& parameter : parameters_) {
-            const bool one = parameter.name == name;
-            const bool group =
-                parameter.name.size() > name.size() && parameter.name.starts_with(name) &&
-                parameter.name.find_first_not_of("0123456789", name.size()) == std::string::npos;
-            if (!one && !(group && !experiment.nominal.contains(parameter.name))) continue;
+            const bool of_group =
+                is_numbered(parameter.name, name) && !experiment.nominal.contains(parameter.name);
+            if (parameter.name != name && !of_group) continue;
             parameter.neutral = value;
             known = true;
         }
@@ -88,8 +97,7 @@ namespace {
 /// A nominal number far outside anything built gives no prediction to start from.
 void check_finite(const Experiment& experiment, const Model& model) {
     constexpr double kLargest = 1e9;
-    Prediction prediction;
-    model.predict(model.neutral(), prediction);
+    const Prediction prediction = model.predicted(model.neutral());
     for (std::size_t o = 0; o < prediction.size(); ++o)
         for (const double mean : prediction[o].mean)
             if (!(std::abs(mean) < kLargest))

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,6 +74,11 @@ struct Predicted {
 };
 using Prediction = std::vector<Predicted>;
 
+/// A row's value; `neutral` where there are none.
+inline double of_row(const std::vector<double>& values, std::size_t i, double neutral = 0.0) {
+    return values.empty() ? neutral : values[i];
+}
+
 /// The mean of row `i` as a reading shows it: cut to nothing in a dead zone, to the ceiling above it.
 double shown(const Predicted& predicted, std::size_t i);
 
@@ -85,7 +91,7 @@ struct ModelParameter {
 /// A parameter of how rows are looked at, not of what the simulator does: every fit moves it, as it does the
 /// noise.
 struct Nuisance {
-    int index = -1;  ///< in Model::parameters()
+    std::size_t index = 0;  ///< in Model::parameters()
     double low = 0.0, high = 0.0, prior_sd = 1.0;
     bool wanders = false;  ///< lets sums wander, but at `high`
 };
@@ -97,14 +103,14 @@ class Model {
     const std::vector<ModelParameter>& parameters() const { return parameters_; }
     const std::vector<Observable>& observables() const { return observables_; }
     const std::vector<Nuisance>& nuisances() const { return nuisances_; }
-    /// -1: no such parameter.
-    int find(std::string_view name) const;
+    std::optional<std::size_t> find(std::string_view name) const;
     /// "proximity.gain*" -> the indices of proximity.gain0, ... that occur in the data.
-    std::vector<int> matching(std::string_view pattern) const;
+    std::vector<std::size_t> matching(std::string_view pattern) const;
     std::vector<double> neutral() const;
 
     /// `values` as parameters(). Reuses the memory of `out`. May run on several threads at a time.
     virtual void predict(const std::vector<double>& values, Prediction& out) const = 0;
+    Prediction predicted(const std::vector<double>& values) const;
 
     /// Where the data itself suggests that a fit of this parameter begins; mostly nowhere.
     virtual std::vector<double> starts(std::string_view) const { return {}; }
@@ -114,7 +120,8 @@ class Model {
     virtual std::map<std::string, double> implied() const { return {}; }
 
   protected:
-    int add(std::string name, std::string unit, double neutral);
+    ModelParameter& parameter(std::string_view name) { return parameters_[find(name).value()]; }
+    std::size_t add(std::string name, std::string unit, double neutral);
     /// Takes the experiment's nominal numbers over; InputError for one that this kind does not know.
     void apply_nominal(const Experiment& experiment);
 

@@ -53,7 +53,7 @@ class ModelOf : public Model {
     }
     /// Has no say with this experiment: a name that nothing asks for.
     void hide(std::string_view name) {
-        ModelParameter& known = parameters_[static_cast<std::size_t>(find(name))];
+        ModelParameter& known = parameter(name);
         known.name.insert(0, "-");
         known.simulator = false;
     }
@@ -71,7 +71,7 @@ class ModelOf : public Model {
     using Place = std::function<double*(Numbers&)>;
     void put(const std::string& name, const char* unit, Place place) {
         const double neutral = *place(defaults_);
-        places_.emplace_back(std::move(place), static_cast<std::size_t>(add(name, unit, neutral)));
+        places_.emplace_back(std::move(place), add(name, unit, neutral));
     }
 
     Numbers defaults_;

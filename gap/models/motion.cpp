@@ -1,7 +1,7 @@
 // Odometry and motion: what the tracker saw against what the motors did. A run is compared as three sums over
 // its rows: way along the heading, way across it, heading. The tracker's own heading turns its steps into
 // along and across, so an error of heading does not spread into the other two; what its noise adds to them is
-// predicted, as far as the wheels' heading can be trusted (steadied_heading.h). With counters and commands
+// predicted, as far as the wheels' heading can be trusted (motion_path.h). With counters and commands
 // both recorded, the counters are compared with the commands as well.
 //
 // Deviations from the world model: 1. the wheel follows its motor at once, but for the loss a start or stop
@@ -12,7 +12,6 @@
 #include "gap/models/model_of.h"
 #include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
-#include "gap/models/steadied_heading.h"
 #include "physics/description/parameters.h"
 
 #include <algorithm>
@@ -64,7 +63,7 @@ class MotionModel final : public ModelOf<Numbers> {
         apply_nominal(experiment);
         const auto mu = experiment.nominal.find("contact.mu");
         if (mu != experiment.nominal.end() && !experiment.nominal.contains("inverse_friction"))
-            parameters_[static_cast<std::size_t>(find("inverse_friction"))].neutral = 1 / mu->second;
+            parameter("inverse_friction").neutral = 1 / mu->second;
         // Turning mixes the tracker's noise of along and across: their sums wander.
         if (!room()) observables_[0].turn = observables_[1].turn = turns();
         for (std::size_t o = 0; exact_ && !counted_ && o < 3; ++o)
@@ -75,11 +74,10 @@ class MotionModel final : public ModelOf<Numbers> {
         const Numbers now = numbers(v);
         out.resize(observables_.size());
         const std::size_t n = observables_[0].y.size();
-        for (int o = 0; o < 3; ++o)
-            out[static_cast<std::size_t>(o)].mean.resize(n);
         const bool noisy = now.push.rate > 0 || (!counted_ && now.drop > 0);
-        for (int o = 0; o < 3; ++o) {
-            Predicted& p = out[static_cast<std::size_t>(o)];
+        for (std::size_t o = 0; o < 3; ++o) {
+            Predicted& p = out[o];
+            p.mean.resize(n);
             p.jolt.assign(now.robot.step_loss_speed > 0 && (o != 1 || room()) ? n : 0, 0.0);
             p.lapse.assign(noisy ? n : 0, 0.0);
             p.lapse_scale.assign(noisy ? n : 0, 0.0);
@@ -90,28 +88,14 @@ class MotionModel final : public ModelOf<Numbers> {
         }
         std::size_t first = 0;
         const double late = now.delay + (counted_ ? 0.0 : now.latency);
-        const auto of_all = [&](auto look) {
-            std::vector<decltype(look(paths_.front()))> all;
+        const auto driven = driven_.get({late}, [&] {
+            std::vector<Driven> all;
             for (const Path& path : paths_)
-                all.push_back(look(path));
+                all.push_back(driven_by(path, late));
             return all;
-        };
-        const auto driven = driven_.get(
-            {late}, [&] { return of_all([&](const Path& path) { return driven_by(path, late); }); });
-        std::shared_ptr<const std::vector<std::array<Paced, 2>>> paced;
-        if (now.robot.deadband > 0)
-            paced = paced_.get({late}, [&] {
-                return of_all([&](const Path& path) {
-                    return std::array{paced_by(path, 0, late), paced_by(path, 1, late)};
-                });
-            });
-        std::shared_ptr<const std::vector<std::vector<char>>> settled;
-        if (now.push.rate > 0)
-            settled = settled_.get(
-                {late}, [&] { return of_all([&](const Path& path) { return settled_rows(path, late); }); });
+        });
         for (std::size_t k = 0; k < paths_.size(); ++k) {
-            const Ways ways{(*driven)[k], paced ? &(*paced)[k] : nullptr, settled ? &(*settled)[k] : nullptr};
-            drive(now, paths_[k], ways, late, first, out);
+            drive(now, paths_[k], (*driven)[k], late, first, out);
             first += paths_[k].time.size();
         }
         if (counted_) predict_counters(now, out);
@@ -127,7 +111,7 @@ class MotionModel final : public ModelOf<Numbers> {
         for (const Path& path : paths_) {
             std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
             std::array<double, 2> last{pacer[0].at(path.time[0]), pacer[1].at(path.time[0])};
-            const auto settled = settled_rows(path, 0.0);
+            const std::vector<char> settled = driven_by(path, 0.0).settled;
             for (std::size_t i = 1; i < path.time.size(); ++i)
                 for (std::size_t w = 0; w < 2; ++w) {
                     const double way = along_[row + i] - along_[row + i - 1],
@@ -312,21 +296,14 @@ class MotionModel final : public ModelOf<Numbers> {
                  {&Numbers::heading_span, "tracker.heading_span", "ln s"},
                  {&Numbers::heading_doubt, "tracker.heading_doubt", "ln rad"},
                  {&Numbers::late_step, "counter.late_step", "1"}});
-        if (counted_) nuisances_.push_back({find("counter.late_step"), 0.0, kMostLateStep, kLateStep});
+        if (counted_) nuisances_.push_back({*find("counter.late_step"), 0.0, kMostLateStep, kLateStep});
         nuisances_.push_back(
-            {find("tracker.heading_doubt"), std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
-        nuisances_.push_back({find("tracker.heading_span"), std::log(kShortestSpan), std::log(kLongestSpan),
+            {*find("tracker.heading_doubt"), std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
+        nuisances_.push_back({*find("tracker.heading_span"), std::log(kShortestSpan), std::log(kLongestSpan),
                               kSpanWidth, true});
     }
 
-    /// What is known of a path's motors; the last two only where a dead band or pushes ask for them.
-    struct Ways {
-        const Driven& driven;
-        const std::array<Paced, 2>* paced;
-        const std::vector<char>* settled;
-    };
-
-    void drive(const Numbers& values, const Path& path, const Ways& ways, double late, std::size_t first,
+    void drive(const Numbers& values, const Path& path, const Driven& motors, double late, std::size_t first,
                Prediction& out) const {
         const physics::BodyParameters& robot = values.robot;
         const double turn = 2 * std::numbers::pi / robot.steps_per_turn;
@@ -344,7 +321,7 @@ class MotionModel final : public ModelOf<Numbers> {
             std::array<double, 2> moved{};
             double slips = 0.0;  // variance of the way that is lost, m2
             for (std::size_t w = 0; w < 2; ++w) {
-                const Driven::Wheel& wheel = ways.driven.wheel[w];
+                const Driven::Wheel& wheel = motors.wheel[w];
                 const double asked = wheel.asked[i];
                 moves = moves || asked > kStill;
                 double change = wheel.steps[i];
@@ -356,7 +333,7 @@ class MotionModel final : public ModelOf<Numbers> {
                         change -= lost;
                         slips += kSlip * std::abs(lost) * metre[w] * metre[w];
                     }
-                    if (robot.deadband > 0) change *= let_through((*ways.paced)[w], i, robot.deadband);
+                    if (robot.deadband > 0) change *= let_through(wheel, i, robot.deadband);
                 }
                 driven[w] += change * metre[w];
                 const double play = robot.backlash / 2 * metre[w] / turn;
@@ -399,7 +376,7 @@ class MotionModel final : public ModelOf<Numbers> {
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (robot.axle_length * robot.axle_length);
             }
-            if (values.push.rate > 0 && (*ways.settled)[i] != 0) {
+            if (values.push.rate > 0 && motors.settled[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(values.push.rate * span, 0.5);
                     out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;
@@ -514,8 +491,6 @@ class MotionModel final : public ModelOf<Numbers> {
     std::vector<Path> paths_;
     std::vector<double> along_;                              // way along the tracker's heading, a row each
     KeyedCache<std::vector<Driven>> driven_;                 // by lateness
-    KeyedCache<std::vector<std::array<Paced, 2>>> paced_;    // by lateness
-    KeyedCache<std::vector<std::vector<char>>> settled_;     // by lateness
     KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency and late step
     bool counted_ = false;
     bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them

@@ -13,9 +13,9 @@ constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for lo
 constexpr double kSameTime = 1e-6;     // s
 constexpr double kLeastChance = 1e-6;  // of losing a command again and again
 
-void add_paces(const WheelCurve& curve, double from, double to, std::vector<Pace>& paces) {
-    CurveReader reader(curve);
-    auto knot = std::upper_bound(curve.time.begin(), curve.time.end(), from);
+void add_paces(const WheelCurve& curve, CurveReader& reader, double from, double to,
+               std::vector<Pace>& paces) {
+    auto knot = std::ranges::upper_bound(curve.time, from);
     double at = reader.at(from);
     while (from < to) {
         const double end = knot == curve.time.end() ? to : std::min(*knot++, to);
@@ -27,71 +27,56 @@ void add_paces(const WheelCurve& curve, double from, double to, std::vector<Pace
 }
 
 bool settled(const Path& path, double before, double span) {
-    return std::all_of(path.wheel, path.wheel + 2, [&](const WheelCurve& wheel) {
-        const auto after = std::upper_bound(wheel.jumps.begin(), wheel.jumps.end(), before + kSameTime,
-                                            [](double t, const SpeedJump& j) { return t < j.time; });
+    return std::ranges::all_of(path.wheel, [&](const WheelCurve& wheel) {
+        const auto after = std::ranges::upper_bound(wheel.jumps, before + kSameTime, {}, &SpeedJump::time);
         return after == wheel.jumps.begin() || before - (after - 1)->time > 1.5 * span;
     });
+}
+
+Driven::Wheel driven_wheel(const WheelCurve& done, const WheelCurve& asked, const std::vector<double>& time,
+                           double late) {
+    Driven::Wheel wheel;
+    CurveReader reader(done), pacer(asked), pieces(asked);
+    const auto jump_from = [&](double t) {
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(done.jumps, t, {}, &SpeedJump::time) -
+                                          done.jumps.begin());
+    };
+    double last = 0.0, last_asked = 0.0;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        const double now = time[i] - late, before = i == 0 ? now : time[i - 1] - late;
+        const double steps = reader.at(now), commanded = &asked == &done ? steps : pacer.at(now);
+        wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
+        wheel.asked.push_back(i == 0 ? 0.0 : std::abs(commanded - last_asked));
+        last = steps;
+        last_asked = commanded;
+        wheel.first_jump.push_back(jump_from(before - kLongestSlip));
+        wheel.last_jump.push_back(jump_from(now));
+        if (i > 0) add_paces(asked, pieces, before, now, wheel.paces);
+        wheel.last_pace.push_back(static_cast<std::uint32_t>(wheel.paces.size()));
+    }
+    return wheel;
 }
 
 }  // namespace
 
 Driven driven_by(const Path& path, double late) {
     Driven driven;
-    const std::size_t n = path.time.size();
-    for (std::size_t w = 0; w < 2; ++w) {
-        Driven::Wheel& wheel = driven.wheel[w];
-        const WheelCurve &done = path.wheel[w], &told = pace_of(path, w);
-        CurveReader reader(done), pacer(told);
-        const auto& jumps = done.jumps;
-        for (std::vector<double>* one : {&wheel.steps, &wheel.asked})
-            one->reserve(n);
-        for (std::vector<std::uint32_t>* one : {&wheel.first_jump, &wheel.last_jump})
-            one->reserve(n);
-        double last = 0.0, last_pace = 0.0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-            const double steps = reader.at(now), pace = &told == &done ? steps : pacer.at(now);
-            wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
-            wheel.asked.push_back(i == 0 ? 0.0 : std::abs(pace - last_pace));
-            last = steps;
-            last_pace = pace;
-            const auto first = std::lower_bound(jumps.begin(), jumps.end(), before - kLongestSlip,
-                                                [](const SpeedJump& j, double t) { return j.time < t; });
-            const auto end = std::lower_bound(first, jumps.end(), now,
-                                              [](const SpeedJump& j, double t) { return j.time < t; });
-            wheel.first_jump.push_back(static_cast<std::uint32_t>(first - jumps.begin()));
-            wheel.last_jump.push_back(static_cast<std::uint32_t>(end - jumps.begin()));
-        }
-    }
-    return driven;
-}
-
-Paced paced_by(const Path& path, std::size_t wheel, double late) {
-    Paced paced;
-    for (std::size_t i = 0; i < path.time.size(); ++i) {
-        if (i > 0) add_paces(pace_of(path, wheel), path.time[i - 1] - late, path.time[i] - late, paced.paces);
-        paced.last.push_back(static_cast<std::uint32_t>(paced.paces.size()));
-    }
-    return paced;
-}
-
-std::vector<char> settled_rows(const Path& path, double late) {
-    std::vector<char> rows;
+    for (std::size_t w = 0; w < 2; ++w)
+        driven.wheel[w] = driven_wheel(path.wheel[w], pace_of(path, w), path.time, late);
     for (std::size_t i = 0; i < path.time.size(); ++i) {
         const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-        rows.push_back(settled(path, before, now - before) ? 1 : 0);
+        driven.settled.push_back(settled(path, before, now - before) ? 1 : 0);
     }
-    return rows;
+    return driven;
 }
 
 const WheelCurve& pace_of(const Path& path, std::size_t wheel) {
     return path.asked[wheel].empty() ? path.wheel[wheel] : path.asked[wheel];
 }
 
-double let_through(const Paced& wheel, std::size_t row, double deadband) {
+double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband) {
     double all = 0.0, moved = 0.0;
-    for (std::uint32_t k = row == 0 ? 0 : wheel.last[row - 1]; k < wheel.last[row]; ++k) {
+    for (std::uint32_t k = row == 0 ? 0 : wheel.last_pace[row - 1]; k < wheel.last_pace[row]; ++k) {
         const Pace& pace = wheel.paces[k];
         all += pace.steps;
         moved += pace.steps / (1 + std::exp(-(pace.speed - deadband) / (kEdge * deadband)));
@@ -119,14 +104,40 @@ double slipped(std::span<const SpeedJump> jumps, double metre, double inverse_mu
 }
 
 Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double to) {
-    const auto after = std::upper_bound(jumps.begin(), jumps.end(), from + kSameTime,
-                                        [](double t, const SpeedJump& j) { return t < j.time; });
+    const auto after = std::ranges::upper_bound(jumps, from + kSameTime, {}, &SpeedJump::time);
     if (after == jumps.begin() || to <= from) return {};
     const SpeedJump& last = *(after - 1);
     const double again = std::round((from - last.time) / (to - from));
     const double chance = std::pow(drop, 1 + std::max(again, 0.0));
     if (chance < kLeastChance) return {};
     return {chance, std::abs(last.change) * (to - from)};
+}
+
+void heading_errors(std::span<const double> above, std::span<const double> time, double span,
+                    std::vector<double>& errors) {
+    const std::size_t n = above.size();
+    errors.assign(n, 0.0);
+    thread_local std::vector<double> sums, weights;
+    sums.resize(n);
+    weights.resize(n);
+    double sum = 0.0, weight = 0.0, kept = 0.0, step = -1.0;
+    const auto fade = [&](double seconds) {
+        if (seconds != step) kept = std::exp(-(step = seconds) / span);
+        sum *= kept;
+        weight *= kept;
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+        if (i > 0) fade(time[i] - time[i - 1]);
+        sums[i] = sum += above[i];
+        weights[i] = weight += 1.0;
+    }
+    sum = weight = 0.0;
+    for (std::size_t i = n; i-- > 0;) {
+        errors[i] = above[i] - (sums[i] + sum) / (weights[i] + weight);
+        sum += above[i];
+        weight += 1.0;
+        if (i > 0) fade(time[i] - time[i - 1]);
+    }
 }
 
 }  // namespace puckloop::gap

@@ -17,7 +17,7 @@ struct Path {
     std::vector<double> time, middle, load, incline;  ///< of the rows used
 };
 
-/// Steps told at one speed, without sign: a row has several such pieces where the command changes in it.
+/// Steps commanded at one speed, without sign: a row has several such pieces where the command changes in it.
 struct Pace {
     double steps, speed;
 };
@@ -25,31 +25,25 @@ struct Pace {
 /// What a path's motors did in each of its rows, for one lateness of the tracker.
 struct Driven {
     struct Wheel {
-        std::vector<double> steps, asked;                  ///< steps made; steps told, without sign
+        std::vector<double> steps, asked;                  ///< steps made; steps commanded, without sign
         std::vector<std::uint32_t> first_jump, last_jump;  ///< changes of speed that may still cost way
+        std::vector<Pace> paces;                           ///< what was commanded, in pieces of one speed
+        std::vector<std::uint32_t> last_pace;              ///< end of each row's pieces
     };
     Wheel wheel[2];
+    /// Has neither wheel changed its speed in the row or in the one before? What happens after a change
+    /// cannot be parted from what the change itself does, and is not taken for a push.
+    std::vector<char> settled;
 };
 
-/// `late`: s that the tracker tells a pose late.
+/// `late`: s by which the tracker's poses are late.
 Driven driven_by(const Path& path, double late);
 
-/// A wheel's steps told, in pieces of one speed.
-struct Paced {
-    std::vector<Pace> paces;
-    std::vector<std::uint32_t> last;  ///< end of each row's pieces
-};
-Paced paced_by(const Path& path, std::size_t wheel, double late);
-
-/// For each row: has neither wheel changed its speed in it or in the one before? What happens after a change
-/// cannot be told from what the change itself does, and is not taken for a push.
-std::vector<char> settled_rows(const Path& path, double late);
-
-/// What tells the speed of a wheel: the command, where there is one; a counter's speeds are rounded.
+/// Where the speed of a wheel is read: the command, where there is one; a counter's speeds are rounded.
 const WheelCurve& pace_of(const Path& path, std::size_t wheel);
 
 /// Share of a row's steps that a dead band (steps/s) lets through.
-double let_through(const Paced& wheel, std::size_t row, double deadband);
+double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband);
 
 /// Metres that changes of speed cost between two times (s): wheels follow no faster than mu g. On reversal
 /// the wheel rolls on while its gear crosses the play (metres), and slides less. `metre`: of a step.
@@ -62,5 +56,15 @@ struct Loss {
     double chance = 0.0, steps = 0.0;
 };
 Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double to);
+
+/// The heading that turns a tracker's steps into along and across: neither the tracker's, which is noisy and
+/// makes the sums wander, nor the wheels', which a wrong parameter turns away, but the wheels' carried along
+/// the tracker's.
+///
+/// Errors of measured headings. `above`: measured minus predicted, rad, a row each; `time`: s, ascending.
+/// What `above` keeps for longer than `span` seconds is taken for the robot's own, the rest for the
+/// tracker's. Deviation: an average weighted by exp(-distance / span), not a smoother that knows the tails.
+void heading_errors(std::span<const double> above, std::span<const double> time, double span,
+                    std::vector<double>& errors);
 
 }  // namespace puckloop::gap

@@ -55,7 +55,7 @@ class ProximityModel final : public ModelOf<Numbers> {
         center(std::move(battery), battery_);
         center(std::move(order), order_);
         if (!order_.empty()) {
-            const auto [first, last] = std::minmax_element(order_.begin(), order_.end());
+            const auto [first, last] = std::ranges::minmax_element(order_);
             half_order_ = (*last - *first) / 2;
             const auto& run = observables_[0].run;
             for (std::size_t i = 1; i < run.size(); ++i)
@@ -100,7 +100,7 @@ class ProximityModel final : public ModelOf<Numbers> {
         p.mean.resize(n);
         const Numbers all = numbers(v);
         const physics::ProximityParameters& now = all.proximity;
-        // What the curve says changes with few parameters: the rest reuse it. One sensor's direction moves
+        // The curve changes with few parameters: the rest reuse it. One sensor's direction moves
         // only that sensor's rows.
         // clang-format off
         std::vector<double> key{now.curve, now.amplitude, now.origin, now.exponent, now.saturation, now.reach,
@@ -115,13 +115,12 @@ class ProximityModel final : public ModelOf<Numbers> {
             for (std::size_t k = 0; k < seen->size(); ++k)
                 p.mean[rows_of_[s][k]] = (*seen)[k];
         }
-        // Idle reading of a sensor, as far as the data or the simulator says.
+        // Idle reading of a sensor, as far as it is known from the data or the simulator.
         const auto idle = [&](std::size_t sensor) { return now.offset[sensor % physics::kProximitySensors]; };
         for (std::size_t i = 0; i < n; ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
             double seen = p.mean[i];
-            if (!object_.empty())
-                seen *= v[static_cast<std::size_t>(object_parameter_[static_cast<std::size_t>(object_[i])])];
+            if (!object_.empty()) seen *= v[object_[i]];
             // What the others read has its share of this one's light in it, which does not come back again.
             const double own = seen, pair = now.pair_crosstalk, beside = now.neighbour_crosstalk;
             if (pair != 0.0) seen += pair * (pair_[i] - idle(s + kOpposite) - pair * own);
@@ -161,12 +160,12 @@ class ProximityModel final : public ModelOf<Numbers> {
     /// outliers: a fit that begins at none stays at an age that only the far ones bear.
     std::vector<double> ages() const {
         constexpr double kYoungest = 5e-4, kOldest = 0.5, kRatio = 1.15;  // s
-        if (std::all_of(velocity_.begin(), velocity_.end(), [](double v) { return v == 0.0; })) return {};
+        if (std::ranges::all_of(velocity_, [](double v) { return v == 0.0; })) return {};
         std::vector<double> values = neutral();
         Prediction prediction;
         double best = 0.0, least = INFINITY;
         const auto look_at = [&](double age) {
-            values[static_cast<std::size_t>(find("proximity.age"))] = age;
+            values[*find("proximity.age")] = age;
             predict(values, prediction);
             double sum = 0.0;
             for (std::size_t i = 0; i < velocity_.size(); ++i)
@@ -185,9 +184,8 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::vector<double> thresholds() const {
         constexpr double kLowest = 3.0, kHighest = 2000.0, kRatio = 1.02;
         const auto& y = observables_[0].y;
-        if (std::none_of(y.begin(), y.end(), [](double reading) { return reading <= 0; })) return {};
-        Prediction prediction;
-        predict(neutral(), prediction);
+        if (std::ranges::none_of(y, [](double reading) { return reading <= 0; })) return {};
+        const Prediction prediction = predicted(neutral());
         double best = 0.0;
         std::size_t fewest = y.size() + 1;
         for (double threshold = kLowest; threshold < kHighest; threshold *= kRatio) {
@@ -201,11 +199,10 @@ class ProximityModel final : public ModelOf<Numbers> {
         return {best};
     }
 
-    /// Readings are held between two samples of the sensor's schedule, whose phase the log does not tell: the
+    /// Readings are held between two samples of the sensor's schedule, whose phase is not in the log: the
     /// one that gives the strongest line is taken, where it is clearly stronger than without a schedule.
     void find_schedule() {
-        Prediction prediction;
-        predict(neutral(), prediction);
+        const Prediction prediction = predicted(neutral());
         Observable& o = observables_[0];
         if (o.time.empty()) return;
         const std::vector<double> logged = o.time;
@@ -231,7 +228,6 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::vector<double> see(const physics::ProximityParameters& now, std::size_t sensor,
                             double turned) const {
         std::vector<double> all;
-        all.reserve(rows_of_[sensor].size());
         const double turned_cosine = std::cos(turned), turned_sine = std::sin(turned);
         for (const std::size_t i : rows_of_[sensor]) {
             const double normal =
@@ -258,12 +254,12 @@ class ProximityModel final : public ModelOf<Numbers> {
         if (values.empty() || std::isnan(sum)) return;
         for (double& value : values)
             value -= sum / static_cast<double>(values.size());
-        if (*std::max_element(values.begin(), values.end()) > 0) out = std::move(values);
+        if (*std::ranges::max_element(values) > 0) out = std::move(values);
     }
 
-    /// Which object a row is about: said, or told by surface's name or stated reflectivity.
-    std::vector<double> objects_of(const Experiment& experiment, const std::vector<double>& said) const {
-        if (experiment.has("object")) return said;
+    /// Which object a row is about: as stated, else by the surface's name or its reflectivity.
+    std::vector<double> objects_of(const Experiment& experiment, const std::vector<double>& stated) const {
+        if (experiment.has("object")) return stated;
         std::map<std::string, double> surfaces;
         for (const Run& run : experiment.runs)
             surfaces.emplace(run.condition("surface"), static_cast<double>(surfaces.size() + 1));
@@ -273,11 +269,11 @@ class ProximityModel final : public ModelOf<Numbers> {
                 objects[i] = surfaces.at(experiment.runs[observables_[0].run[i]].condition("surface"));
             return objects;
         }
-        const auto stated = distinct(reflectivity_);
-        if (stated.size() < 2 || stated.size() > kMostObjects) return objects;
+        const auto steps = distinct(reflectivity_);
+        if (steps.size() < 2 || steps.size() > kMostObjects) return objects;
         for (std::size_t i = 0; i < objects.size(); ++i)
-            objects[i] = static_cast<double>(
-                std::lower_bound(stated.begin(), stated.end(), reflectivity_[i]) - stated.begin() + 1);
+            objects[i] =
+                static_cast<double>(std::ranges::lower_bound(steps, reflectivity_[i]) - steps.begin() + 1);
         return objects;
     }
 
@@ -306,12 +302,12 @@ class ProximityModel final : public ModelOf<Numbers> {
                                      fmt::format("direction{}", sensor)});
         const auto kinds = distinct(objects);
         if (kinds.size() < 2) return;
+        std::map<double, std::size_t> parameter;
         for (const double object : kinds)
-            object_parameter_.push_back(
-                add(fmt::format("object.reflectivity{}", static_cast<long>(object)), "1", 1.0));
+            parameter[object] =
+                add(fmt::format("object.reflectivity{}", static_cast<long>(object)), "1", 1.0);
         for (const double object : objects)
-            object_.push_back(
-                static_cast<int>(std::lower_bound(kinds.begin(), kinds.end(), object) - kinds.begin()));
+            object_.push_back(parameter.at(object));
     }
 
     /// Do others see light of their own that could reach a sensor: more than noise and what it casts on them?
@@ -324,9 +320,8 @@ class ProximityModel final : public ModelOf<Numbers> {
             for (const std::size_t i : rows)
                 readings.push_back(others[i]);
             const double idle = stats::quantile(readings, 0.05);
-            count += static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t i) {
-                return others[i] > idle + kMostCast * own[i] + noise;
-            }));
+            count += static_cast<std::size_t>(std::ranges::count_if(
+                rows, [&](std::size_t i) { return others[i] > idle + kMostCast * own[i] + noise; }));
         }
         return static_cast<double>(count) > kLitRows * static_cast<double>(own.size());
     }
@@ -350,7 +345,7 @@ class ProximityModel final : public ModelOf<Numbers> {
     }
 
     static constexpr double kLit = 4.0, kMostCast = 0.2;  // of a reading's noise, of its own light
-    static constexpr double kLitRows = 0.05;              // share of the rows that are enough to tell by
+    static constexpr double kLitRows = 0.05;              // share of the rows that are enough
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0;
     double half_order_ = 0.0;  // half the range of the runs' `order`: the unit of the drift's zero
@@ -359,7 +354,8 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::vector<double> spread_, cosine_, ray_cosine_, ray_sine_;
     std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, stepping_,
         velocity_, time_, others_, battery_, order_;
-    std::vector<int> sensor_, object_, object_parameter_;
+    std::vector<int> sensor_;
+    std::vector<std::size_t> object_;  // the parameter of each row's object
     ForeignPulses pulses_;
     std::array<double, physics::kProximitySensors> angle0_{};
 };

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 
 namespace puckloop::gap {
 
@@ -29,7 +30,7 @@ constexpr double kReception = 0.999;
 constexpr double kFullScale = 4095;
 constexpr std::size_t kReceivers = 12;
 constexpr double kLeastGain = 0.01;
-constexpr std::size_t kLeastReceivers = 3;           // with a gain: fewer tell nothing of a bearing
+constexpr std::size_t kLeastReceivers = 3;           // with a gain: fewer show nothing of a bearing
 constexpr double kTurn = 0.6;                        // rad: what a reflection turns a bearing by
 constexpr double kTurned = 0.66, kWholeTurn = 0.76;  // share beyond half a receiver's 30 degrees; its rms
 constexpr std::size_t kLeastPiled = 5;               // equal highest strengths that look like a rail
@@ -54,7 +55,7 @@ constexpr std::array<double, kReceivers + 1> all_one() {
 struct Numbers {
     /// 1: the simulator's boards; read before the fit, as `carrier` (Hz).
     double ring = 0.0, carrier = 0.0;
-    /// Of receivers and emitters by their number; 0: not told, or all.
+    /// Of receivers and emitters by their number; 0: not stated, or all.
     std::array<double, kReceivers + 1> receiver = all_one(), emitter = all_one();
     double strength_gain = 0.0, emitter_lobe = 0.0, receiver_lobe = 0.0, strength_spread = 0.0,
            far_floor = 0.0, saturation = kFullScale, multipath = 0.0, multipath_loss = 0.7,
@@ -78,9 +79,9 @@ class RabModel final : public ModelOf<Numbers> {
     void predict(const std::vector<double>& v, Prediction& out) const override {
         const Numbers now = numbers(v);
         out.resize(observables_.size());
-        if (strength_ >= 0) predict_strength(now, out[static_cast<std::size_t>(strength_)]);
-        if (bearing_ >= 0) predict_bearing(now, out[static_cast<std::size_t>(bearing_)]);
-        if (reception_ >= 0) predict_reception(now, out[static_cast<std::size_t>(reception_)]);
+        if (strength_) predict_strength(now, out[*strength_]);
+        if (bearing_) predict_bearing(now, out[*bearing_]);
+        if (reception_) predict_reception(now, out[*reception_]);
     }
 
     std::vector<double> starts(std::string_view parameter) const override {
@@ -91,11 +92,11 @@ class RabModel final : public ModelOf<Numbers> {
   private:
     /// The rail that the highest strengths lie at; 0 where none is to be seen.
     double rail_seen() const {
-        if (strength_ < 0) return 0.0;
-        const auto& y = observables_[static_cast<std::size_t>(strength_)].y;
-        const double top = std::exp(*std::max_element(y.begin(), y.end()));
+        if (!strength_) return 0.0;
+        const auto& y = observables_[*strength_].y;
+        const double top = std::exp(*std::ranges::max_element(y));
         const auto piled = static_cast<std::size_t>(
-            std::count_if(y.begin(), y.end(), [&](double one) { return std::exp(one) > top - 1; }));
+            std::ranges::count_if(y, [&](double one) { return std::exp(one) > top - 1; }));
         return piled < kLeastPiled || top > kFullScale - 1 ? 0.0 : top;
     }
 
@@ -106,15 +107,15 @@ class RabModel final : public ModelOf<Numbers> {
         const auto distance = rows.column("distance_m", 0), bearing = rows.column("true_bearing_rad", 0),
                    facing = rows.column("sender_bearing_rad", NAN), emitter = rows.column("emitter", 0);
         const auto unit = rows.column("unit", NAN);
-        one_unit_ = std::all_of(unit.begin(), unit.end(), [&](double one) { return one == unit.front(); });
+        one_unit_ = std::ranges::all_of(unit, [&](double one) { return one == unit.front(); });
         std::vector<RabLook> looks;
         for (std::size_t i = 0; i < rows.size(); ++i)
             looks.push_back({distance[i], bearing[i], facing[i], static_cast<int>(std::lround(emitter[i]))});
         ring_.emplace(std::move(looks), parameters.ir, experiment.nominal_or("rab.carrier", 0.0));
     }
 
-    /// What drawn boards say of the rows `used`, beside their mean; nothing where all runs state one unit.
-    std::vector<std::vector<double>> of_boards(double RabTold::*what,
+    /// What drawn boards read in the rows `used`, beside their mean; nothing where all runs state one unit.
+    std::vector<std::vector<double>> of_boards(double RabReading::*what,
                                                const std::vector<std::uint32_t>& used) const {
         std::vector<std::vector<double>> all;
         if (one_unit_) return all;
@@ -142,13 +143,13 @@ class RabModel final : public ModelOf<Numbers> {
         }
         if (ring_) {
             spread_ = taken(ring_->strength_sd(), used);
-            one.run_draws = of_boards(&RabTold::log_strength, used);
+            one.run_draws = of_boards(&RabReading::log_strength, used);
         }
-        // What is not told cannot differ: one common gain would be the strength's scale by another name.
+        // What is not stated cannot differ: one common gain would be the strength's scale by another name.
         if (experiment.has("receiver")) receiver_ = whole(taken(rows.column("receiver", 0), used));
         if (experiment.has("emitter")) emitter_ = whole(taken(rows.column("emitter", 0), used));
         occluded_ = taken(rows.column("occluded", 0), used);
-        strength_ = static_cast<int>(observables_.size());
+        strength_ = observables_.size();
         observables_.push_back(std::move(one));
     }
 
@@ -163,10 +164,10 @@ class RabModel final : public ModelOf<Numbers> {
             one.y[i] = std::remainder(one.y[i] - truth_[i], 2 * std::numbers::pi);
         if (ring_) {
             bearing_factor_ = taken(ring_->bearing_sd(), used);
-            const double usual = *std::min_element(bearing_factor_.begin(), bearing_factor_.end());
+            const double usual = *std::ranges::min_element(bearing_factor_);
             for (double& factor : bearing_factor_)
                 factor /= usual;
-            one.run_draws = of_boards(&RabTold::bearing, used);
+            one.run_draws = of_boards(&RabReading::bearing, used);
         }
         const physics::Parameters defaults;
         for (const double bearing : truth_)
@@ -176,7 +177,7 @@ class RabModel final : public ModelOf<Numbers> {
                 const double strength = facing > 0 ? std::pow(facing, defaults.ir.receiver_exponent) : 0.0;
                 lobe_.push_back({strength * std::cos(way), strength * std::sin(way)});
             }
-        bearing_ = static_cast<int>(observables_.size());
+        bearing_ = observables_.size();
         observables_.push_back(std::move(one));
     }
 
@@ -187,34 +188,29 @@ class RabModel final : public ModelOf<Numbers> {
                          {frame_, "frame_time", 0.0092},
                          {period_, "send_period", 0.02},
                          {rate_, "arrival_rate"}});
-        if (std::all_of(rate_.begin(), rate_.end(), [](double rate) { return rate == 0; }))
+        if (std::ranges::all_of(rate_, [](double rate) { return rate == 0; }))
             for (std::size_t i = 0; i < rate_.size(); ++i)
                 rate_[i] = senders_[i] / std::max(period_[i], 1e-3);
-        reception_ = static_cast<int>(observables_.size());
+        reception_ = observables_.size();
         observables_.push_back(std::move(one));
     }
 
     void declare_all() {
         declare({{&Numbers::strength_gain, "rab.strength_gain", "1"}});
-        auto known = receiver_, known_emitters = emitter_;
-        for (std::vector<int>* one : {&known, &known_emitters}) {
-            std::sort(one->begin(), one->end());
-            one->erase(std::unique(one->begin(), one->end()), one->end());
-        }
-        receivers_ = known.size();
-        for (const int r : known)
+        const std::set<int> receivers(receiver_.begin(), receiver_.end()),
+            emitters(emitter_.begin(), emitter_.end());
+        receivers_ = receivers.size();
+        for (const int r : receivers)
             declare_part(&Numbers::receiver, static_cast<std::size_t>(r), "rab.receiver_gain", r, "1");
-        for (const int e : known_emitters)
+        for (const int e : emitters)
             if (!ring_ || e > 0)
                 declare_part(&Numbers::emitter, static_cast<std::size_t>(e), "rab.emitter_gain", e, "1");
         declare({{&Numbers::ring, "rab.ring", "1"}, {&Numbers::carrier, "rab.carrier", "Hz"}});
         if (ring_) {
             declare({{&Numbers::emitter_lobe, "rab.emitter_lobe", "1"},
                      {&Numbers::receiver_lobe, "rab.receiver_lobe", "1"}});
-            parameters_[static_cast<std::size_t>(find("rab.emitter_lobe"))].neutral =
-                ring_->neutral().emitter_lobe;
-            parameters_[static_cast<std::size_t>(find("rab.receiver_lobe"))].neutral =
-                ring_->neutral().receiver_lobe;
+            parameters_[*find("rab.emitter_lobe")].neutral = ring_->neutral().emitter_lobe;
+            parameters_[*find("rab.receiver_lobe")].neutral = ring_->neutral().receiver_lobe;
         }
         declare({{&Numbers::strength_spread, "rab.strength_spread", "1"},
                  {&Numbers::far_floor, "rab.far_floor", "counts"},
@@ -231,20 +227,20 @@ class RabModel final : public ModelOf<Numbers> {
         if (!(rail_ > 0)) hide("rab.saturation");  // a rail that no strength lies at has no say
     }
 
-    /// ln of each gain; a part that tells next to nothing is not taken for one that tells nothing.
+    /// ln of each gain; a part that gives next to nothing is not taken for one that gives nothing.
     static std::array<double, kReceivers + 1> logs_of(std::array<double, kReceivers + 1> gains) {
         for (double& gain : gains)
             gain = std::log(std::max(gain, kLeastGain));
         return gains;
     }
 
-    std::shared_ptr<const std::vector<RabTold>> told(const Numbers& now) const {
+    std::shared_ptr<const std::vector<RabReading>> ring_readings(const Numbers& now) const {
         RabParts parts = ring_->neutral();
         for (std::size_t k = 0; k < kReceivers; ++k) {
             parts.receiver[k] = std::max(now.receiver[k + 1], kLeastGain);
             parts.emitter[k] = std::max(now.emitter[k + 1], kLeastGain);
         }
-        // What all emitters have in common cannot be told from what all receivers have.
+        // What all emitters have in common cannot be parted from what all receivers have.
         double mean = 0.0;
         for (const double gain : parts.emitter)
             mean += std::log(gain) / kReceivers;
@@ -252,7 +248,7 @@ class RabModel final : public ModelOf<Numbers> {
             gain /= std::exp(mean);
         parts.emitter_lobe = now.emitter_lobe;
         parts.receiver_lobe = now.receiver_lobe;
-        return ring_->told(parts);
+        return ring_->readings(parts);
     }
 
     void predict_strength(const Numbers& now, Predicted& p) const {
@@ -262,12 +258,12 @@ class RabModel final : public ModelOf<Numbers> {
         const double more = 1 + now.strength_spread, gain = now.strength_gain, low = now.far_floor,
                      rail = now.saturation;
         const double other = now.multipath;
-        const auto told_of_ring = ring_ ? told(now) : nullptr;
+        const auto of_ring = ring_ ? ring_readings(now) : nullptr;
         const auto receivers = logs_of(now.receiver), emitters = logs_of(now.emitter);
         for (std::size_t i = 0; i < n; ++i) {
             double level = gain;
             if (ring_) {
-                level += (*told_of_ring)[strength_row_[i]].log_strength;
+                level += (*of_ring)[strength_row_[i]].log_strength;
             } else {
                 level += log_median_[i];
                 if (!receiver_.empty()) level += receivers[static_cast<std::size_t>(receiver_[i])];
@@ -283,13 +279,13 @@ class RabModel final : public ModelOf<Numbers> {
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.3);
         p.lapse_shift = other > 0 ? -now.multipath_loss : 0.0;
-        if (other > 0 && std::any_of(occluded_.begin(), occluded_.end(), [](double o) { return o > 0; }))
+        if (other > 0 && std::ranges::any_of(occluded_, [](double o) { return o > 0; }))
             for (std::size_t i = 0; i < n; ++i)
                 p.lapse[i] = other * (occluded_[i] > 0 ? 1.0 : 0.05);
     }
 
     void predict_bearing(const Numbers& now, Predicted& p) const {
-        const std::size_t n = observables_[static_cast<std::size_t>(bearing_)].y.size();
+        const std::size_t n = observables_[*bearing_].y.size();
         const double other = now.multipath;
         p.mean.assign(n, now.bearing_offset);
         // The simulator's reflections turn by whole receivers, a third of them by none (physics/ir/ir_fate).
@@ -297,7 +293,7 @@ class RabModel final : public ModelOf<Numbers> {
         p.lapse_scale.assign(other > 0 ? n : 0, ring_ ? kWholeTurn : kTurn);
         if (ring_) {
             p.factor = bearing_factor_;
-            const auto all = told(now);
+            const auto all = ring_readings(now);
             for (std::size_t i = 0; i < n; ++i)
                 p.mean[i] +=
                     std::remainder((*all)[bearing_row_[i]].bearing - truth_[i], 2 * std::numbers::pi);
@@ -310,7 +306,7 @@ class RabModel final : public ModelOf<Numbers> {
             p.mean[i] += (*pull)[i];
     }
 
-    /// How far unequal receivers turn the sum of what they measure, by which the board tells bearings.
+    /// How far unequal receivers turn the sum of what they measure, by which the board finds bearings.
     std::vector<double> pull_of(const std::vector<double>& gain, std::size_t n) const {
         std::vector<double> pull(n);
         for (std::size_t i = 0; i < n; ++i) {
@@ -328,7 +324,7 @@ class RabModel final : public ModelOf<Numbers> {
     }
 
     void predict_reception(const Numbers& now, Predicted& p) const {
-        const Observable& o = observables_[static_cast<std::size_t>(reception_)];
+        const Observable& o = observables_[*reception_];
         const std::size_t n = o.y.size();
         p.mean.resize(n);
         const double collisions = now.collisions, kept = 1 - now.random_loss, fetch = now.fetch_time,
@@ -338,7 +334,7 @@ class RabModel final : public ModelOf<Numbers> {
                              std::exp(-2 * collisions * std::max(senders_[i] - 1, 0.0) * frame_[i] /
                                       std::max(period_[i], 1e-4));
             if (fetch > 0) arrives *= std::min(1.0, 1 / std::max(rate_[i] * fetch, 1e-6));
-            if (beat > 0) {  // lost spells: what happened before says much about now
+            if (beat > 0) {  // lost spells: what happened before bears on now
                 double lost = beat;
                 if (o.starts[i] == 0 && !o.time.empty()) {
                     const double forget = std::exp(-(o.time[i] - o.time[i - 1]) / burst);
@@ -363,8 +359,8 @@ class RabModel final : public ModelOf<Numbers> {
     KeyedCache<std::vector<double>> pull_;  // of each bearing, by the receivers' gains
     std::vector<double> log_median_, spread_, occluded_, senders_, frame_, period_, rate_;
     std::vector<int> receiver_, emitter_;
-    std::size_t receivers_ = 0;  // that messages are told of
-    int strength_ = -1, bearing_ = -1, reception_ = -1;
+    std::size_t receivers_ = 0;                                  // that messages state
+    std::optional<std::size_t> strength_, bearing_, reception_;  // of the observables
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ double log_ahead(double bearing, std::size_t sensor) {
     return -0.5 * std::log(std::max(std::abs(std::cos(bearing - table()[sensor].angle)), kLeastCosine));
 }
 
-/// The mean of what is told when each receiver's ln strength scatters by `spread`: which receiver is the
+/// The mean of the reading when each receiver's ln strength scatters by `spread`: which receiver is the
 /// second best is chance then, and the better of two scattered ones is better than their means.
 double mean_log_strength(const std::array<double, kRabParts>& peaks, double bearing, double spread) {
     std::array<std::size_t, kRabParts> order{};
@@ -56,22 +56,22 @@ double mean_log_strength(const std::array<double, kRabParts>& peaks, double bear
         order[k] = k;
     std::partial_sort(order.begin(), order.begin() + 3, order.end(),
                       [&](std::size_t a, std::size_t b) { return peaks[a] > peaks[b]; });
-    std::array<double, 3> level{}, told{};
+    std::array<double, 3> level{}, lit{};
     for (std::size_t k = 0; k < 3; ++k) {
         level[k] = std::log(std::max(peaks[order[k]], kFaintest));
-        told[k] = level[k] + log_ahead(bearing, order[k]);
+        lit[k] = level[k] + log_ahead(bearing, order[k]);
     }
     const double apart = spread * std::numbers::sqrt2;
     const double lead = (level[1] - level[2]) / apart;
-    const double second = told[2] + below(lead) * (told[1] - told[2]) +
+    const double second = lit[2] + below(lead) * (lit[1] - lit[2]) +
                           apart * std::exp(-lead * lead / 2) / std::sqrt(2 * kHalfTurn);
-    const double share = 1 / (1 + std::exp(4 * (told[0] - second)));  // of the second in the sum
-    return told[0] - 0.25 * std::log(1 - share) + 4 * share * (1 - share) * spread * spread;
+    const double share = 1 / (1 + std::exp(4 * (lit[0] - second)));  // of the second in the sum
+    return lit[0] - 0.25 * std::log(1 - share) + 4 * share * (1 - share) * spread * spread;
 }
 
 }  // namespace
 
-RabTold rab_told(const std::array<double, kRabParts>& peaks) {
+RabReading rab_reading(const std::array<double, kRabParts>& peaks) {
     double x = 0, y = 0;
     std::size_t first = 0, second = 0;
     double first_peak = 0, second_peak = 0;
@@ -87,14 +87,14 @@ RabTold rab_told(const std::array<double, kRabParts>& peaks) {
         }
     }
     if (first_peak <= 0) return {};
-    RabTold told;
-    told.bearing = std::atan2(y, x);
+    RabReading read;
+    read.bearing = std::atan2(y, x);
     const auto share = [&](double peak, std::size_t sensor) {
-        return std::exp(4 * (std::log(peak) + log_ahead(told.bearing, sensor)));
+        return std::exp(4 * (std::log(peak) + log_ahead(read.bearing, sensor)));
     };
-    told.log_strength =
+    read.log_strength =
         0.25 * std::log(share(first_peak, first) + (second_peak > 0 ? share(second_peak, second) : 0.0));
-    return told;
+    return read;
 }
 
 RabRing::RabRing(std::vector<RabLook> looks, const physics::IrParameters& parameters, double carrier)
@@ -115,6 +115,16 @@ RabParts RabRing::neutral() const {
 
 double RabRing::full_scale(std::size_t receiver) const {
     return std::max(parameters_.rail - parameters_.baseline[receiver], 1.0);
+}
+
+std::pair<double, double> RabRing::Light::at(std::size_t receiver,
+                                             const std::array<double, kRabParts>& gain) const {
+    double sum = 0, modulated = 0;
+    for (std::size_t e = 0; e < kRabParts; ++e) {
+        sum += gain[e] * static_cast<double>(level[e][receiver]);
+        modulated += gain[e] * static_cast<double>(carrier[e][receiver]);
+    }
+    return {sum, modulated};
 }
 
 RabRing::Light RabRing::light_of(const RabLook& look, const physics::IrBoard& sender,
@@ -177,11 +187,7 @@ std::shared_ptr<const std::vector<RabRing::Seen>> RabRing::gather(const RabParts
         std::vector<Seen> all(looks_.size());
         for (std::size_t i = 0; i < looks_.size(); ++i)
             for (std::size_t k = 0; k < kRabParts; ++k) {
-                double level = 0, carrier = 0;
-                for (std::size_t e = 0; e < kRabParts; ++e) {
-                    level += parts.emitter[e] * static_cast<double>((*light)[i].level[e][k]);
-                    carrier += parts.emitter[e] * static_cast<double>((*light)[i].carrier[e][k]);
-                }
+                const auto [level, carrier] = (*light)[i].at(k, parts.emitter);
                 all[i].level[k] = level;
                 if (level <= 0 || carrier <= 0) continue;
                 if (soft > 0)
@@ -193,26 +199,26 @@ std::shared_ptr<const std::vector<RabRing::Seen>> RabRing::gather(const RabParts
     });
 }
 
-RabTold RabRing::told_of(const Seen& seen, const RabParts& parts) const {
+RabReading RabRing::reading_of(const Seen& seen, const RabParts& parts) const {
     std::array<double, kRabParts> peaks{};
     for (std::size_t k = 0; k < kRabParts; ++k)
         peaks[k] = seen.heard[k] * std::min(parts.receiver[k] * seen.level[k], full_scale(k));
-    RabTold told = rab_told(peaks);
+    RabReading read = rab_reading(peaks);
     const double spread = std::hypot(parameters_.receiver_spread, parameters_.receiver_noise);
-    if (spread > 0 && told.log_strength != 0)
-        told.log_strength = mean_log_strength(peaks, told.bearing, spread);
-    return told;
+    if (spread > 0 && read.log_strength != 0)
+        read.log_strength = mean_log_strength(peaks, read.bearing, spread);
+    return read;
 }
 
-std::shared_ptr<const std::vector<RabTold>> RabRing::told(const RabParts& parts) const {
+std::shared_ptr<const std::vector<RabReading>> RabRing::readings(const RabParts& parts) const {
     std::vector<double> key{parts.emitter_lobe, parts.receiver_lobe};
     key.insert(key.end(), parts.emitter.begin(), parts.emitter.end());
     key.insert(key.end(), parts.receiver.begin(), parts.receiver.end());
-    return told_.get(key, [&] {
+    return readings_.get(key, [&] {
         const auto seen = gather(parts);
-        std::vector<RabTold> all(looks_.size());
+        std::vector<RabReading> all(looks_.size());
         for (std::size_t i = 0; i < looks_.size(); ++i) {
-            all[i] = told_of((*seen)[i], parts);
+            all[i] = reading_of((*seen)[i], parts);
             all[i].log_strength += shift_[i].log_strength;
             all[i].bearing += shift_[i].bearing;
         }
@@ -220,19 +226,19 @@ std::shared_ptr<const std::vector<RabTold>> RabRing::told(const RabParts& parts)
     });
 }
 
-std::vector<std::vector<RabTold>> RabRing::drawn_boards() const {
+std::vector<std::vector<RabReading>> RabRing::drawn_boards() const {
     RandomStream random(1, "gap/rab boards");
-    std::vector<std::vector<RabTold>> all;
+    std::vector<std::vector<RabReading>> all;
     for (std::size_t board = 0; board < kBoards; ++board) {
         RabParts parts = neutral();
         for (std::size_t k = 0; k < kRabParts; ++k) {
             parts.emitter[k] = std::exp(parameters_.emitter_spread * random.normal());
             parts.receiver[k] = std::exp(parameters_.receiver_spread * random.normal());
         }
-        all.push_back(*told(parts));
+        all.push_back(*readings(parts));
     }
     for (std::size_t i = 0; i < looks_.size(); ++i) {
-        RabTold mean;
+        RabReading mean;
         for (auto& board : all) {
             board[i].bearing = std::remainder(board[i].bearing - looks_[i].bearing, 2 * kHalfTurn);
             mean.log_strength += board[i].log_strength / kBoards;
@@ -263,7 +269,7 @@ void RabRing::draw_chance() {
     shift_.assign(looks_.size(), {});
     std::array<double, kRabParts> emitter{}, receiver{}, demodulator{};
     for (std::size_t i = 0; i < looks_.size(); ++i) {
-        const RabTold plainly = told_of((*seen)[i], plain);
+        const RabReading plainly = reading_of((*seen)[i], plain);
         const double near = p.near_noise * std::exp(-std::max(looks_[i].distance, 0.0) / p.near_range);
         double n = 0;
         Sum sum;
@@ -279,19 +285,15 @@ void RabRing::draw_chance() {
                 for (std::size_t e = 0; e < kRabParts; ++e)
                     gain[e] = std::exp(sign * emitter[e]);
                 for (std::size_t k = 0; k < kRabParts; ++k) {
-                    double level = 0, carrier = 0;
-                    for (std::size_t e = 0; e < kRabParts; ++e) {
-                        level += gain[e] * static_cast<double>(all_light[i].level[e][k]);
-                        carrier += gain[e] * static_cast<double>(all_light[i].carrier[e][k]);
-                    }
+                    const auto [level, carrier] = all_light[i].at(k, gain);
                     if (carrier * std::exp(sign * demodulator[k]) < p.threshold) continue;
                     peaks[k] =
                         std::min(std::max(level, kFaintest) * std::exp(sign * receiver[k]), full_scale(k));
                 }
-                if (*std::max_element(peaks.begin(), peaks.end()) <= 0) continue;
-                const RabTold told = rab_told(peaks);
-                const double strength = told.log_strength - plainly.log_strength;
-                const double bearing = std::remainder(told.bearing - plainly.bearing, 2 * kHalfTurn);
+                if (*std::ranges::max_element(peaks) <= 0) continue;
+                const RabReading read = rab_reading(peaks);
+                const double strength = read.log_strength - plainly.log_strength;
+                const double bearing = std::remainder(read.bearing - plainly.bearing, 2 * kHalfTurn);
                 ++n;
                 shift_[i].log_strength += strength;
                 shift_[i].bearing += bearing;

@@ -1,5 +1,5 @@
 #pragma once
-// What one range-and-bearing board tells of another's frame, ring and medium included: light by the
+// What one range-and-bearing board reads of another's frame, ring and medium included: light by the
 // simulator's own coupling (physics/ir_coupling), strength and bearing by the formulas of the board's
 // firmware (protocols/rab_reading, here without its rounding).
 //
@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap {
@@ -33,11 +34,11 @@ struct RabParts {
     double emitter_lobe = 1.0, receiver_lobe = 0.5;       ///< exponents of the cosine
 };
 
-struct RabTold {
+struct RabReading {
     double log_strength = 0.0, bearing = 0.0;  ///< ln counts; rad
 };
 /// The firmware's formulas in double precision; `peaks` are counts above darkness. Without light all is 0.
-RabTold rab_told(const std::array<double, kRabParts>& peaks);
+RabReading rab_reading(const std::array<double, kRabParts>& peaks);
 
 class RabRing {
   public:
@@ -45,18 +46,20 @@ class RabRing {
     RabRing(std::vector<RabLook> looks, const physics::IrParameters& parameters, double carrier);
 
     RabParts neutral() const;
-    /// What is told of each look, chance averaged.
-    std::shared_ptr<const std::vector<RabTold>> told(const RabParts& parts) const;
+    /// The reading of each look, chance averaged.
+    std::shared_ptr<const std::vector<RabReading>> readings(const RabParts& parts) const;
     /// What chance and spread of parts add to each look: sd of ln strength and of the bearing (rad).
     const std::vector<double>& strength_sd() const { return strength_sd_; }
     const std::vector<double>& bearing_sd() const { return bearing_sd_; }
     /// What boards with parts drawn by the simulator's spreads read beside the mean of such boards: some of
     /// them, each of all looks.
-    std::vector<std::vector<RabTold>> drawn_boards() const;
+    std::vector<std::vector<RabReading>> drawn_boards() const;
 
   private:
     struct Light {
         std::array<std::array<float, kRabParts>, kRabParts> level{}, carrier{};  // [emitter][receiver]
+        /// Level and carrier at a receiver, emitters of these gains.
+        std::pair<double, double> at(std::size_t receiver, const std::array<double, kRabParts>& gain) const;
     };
     struct Seen {
         std::array<double, kRabParts> level{}, heard{};  // heard: probability that it counts
@@ -65,7 +68,7 @@ class RabRing {
     std::shared_ptr<const std::vector<Seen>> gather(const RabParts& parts) const;
     Light light_of(const RabLook& look, const physics::IrBoard& sender,
                    const physics::IrBoard& receiver) const;
-    RabTold told_of(const Seen& seen, const RabParts& parts) const;
+    RabReading reading_of(const Seen& seen, const RabParts& parts) const;
     double full_scale(std::size_t receiver) const;
     void draw_chance();
 
@@ -73,10 +76,10 @@ class RabRing {
     physics::IrParameters parameters_;
     double carrier_;  // Hz
     std::vector<double> strength_sd_, bearing_sd_;
-    std::vector<RabTold> shift_;             // what chance adds to the mean
-    KeyedCache<std::vector<Light>> light_;   // by the lobes
-    KeyedCache<std::vector<Seen>> seen_;     // by lobes and emitters
-    KeyedCache<std::vector<RabTold>> told_;  // by all
+    std::vector<RabReading> shift_;                 // what chance adds to the mean
+    KeyedCache<std::vector<Light>> light_;          // by the lobes
+    KeyedCache<std::vector<Seen>> seen_;            // by lobes and emitters
+    KeyedCache<std::vector<RabReading>> readings_;  // by all
 };
 
 }  // namespace puckloop::gap

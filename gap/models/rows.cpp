@@ -2,6 +2,7 @@
 
 #include "gap/clean/quantum.h"
 #include "gap/data/columns.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,14 +30,13 @@ Rows::Rows(const Experiment& experiment, std::string_view chain_by,
         std::map<double, std::uint32_t> seen;
         for (std::uint32_t i = 0; i < run.rows; ++i) {
             place[i] = seen[key.empty() || std::isnan(key[i]) ? 0.0 : key[i]]++;
-            const bool whole = std::all_of(needed.begin(), needed.end(), [&](std::string_view name) {
+            const bool whole = std::ranges::all_of(needed, [&](std::string_view name) {
                 const auto& values = run.column(name);
                 return !values.empty() && !std::isnan(values[i]);
             });
             if (whole) rows.push_back(i);
         }
-        if (!key.empty())
-            std::stable_sort(rows.begin(), rows.end(), [&](auto a, auto b) { return key[a] < key[b]; });
+        if (!key.empty()) std::ranges::stable_sort(rows, [&](auto a, auto b) { return key[a] < key[b]; });
         for (std::size_t i = 0; i < rows.size(); ++i) {
             run_.push_back(static_cast<std::uint32_t>(r));
             row_.push_back(rows[i]);
@@ -63,9 +63,9 @@ std::vector<Rows::Beat> Rows::beats(const std::vector<double>& time) const {
     for (auto& of_run : steps) {
         Beat& beat = beats.emplace_back();
         if (of_run.empty()) continue;
-        std::sort(of_run.begin(), of_run.end());
+        std::ranges::sort(of_run);
         beat.usual = of_run[of_run.size() / 2];
-        const auto on = std::count_if(of_run.begin(), of_run.end(), [&](double step) {
+        const auto on = std::ranges::count_if(of_run, [&](double step) {
             return std::abs(std::remainder(step, beat.usual)) < kOffBeat * beat.usual;
         });
         beat.kept = static_cast<double>(on) >= kOnBeat * static_cast<double>(of_run.size());
@@ -128,7 +128,6 @@ void Rows::take(const std::vector<std::uint32_t>& used, std::initializer_list<Wa
 
 std::vector<double> taken(const std::vector<double>& column, const std::vector<std::uint32_t>& used) {
     std::vector<double> values;
-    values.reserve(used.size());
     for (const auto i : used)
         values.push_back(column[i]);
     return values;
@@ -138,14 +137,13 @@ std::vector<double> distinct(const std::vector<double>& column) {
     std::vector<double> values;
     for (const double value : column)
         if (!std::isnan(value)) values.push_back(value);
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
 }
 
 std::vector<int> whole(const std::vector<double>& column) {
     std::vector<int> numbers;
-    numbers.reserve(column.size());
     for (const double value : column)
         numbers.push_back(static_cast<int>(std::lround(value)));
     return numbers;
@@ -154,7 +152,7 @@ std::vector<int> whole(const std::vector<double>& column) {
 std::vector<int> in_order_met(const std::vector<int>& numbers) {
     std::vector<int> met;
     for (const int number : numbers)
-        if (std::find(met.begin(), met.end(), number) == met.end()) met.push_back(number);
+        if (!stats::contains(met, number)) met.push_back(number);
     return met;
 }
 

@@ -34,8 +34,7 @@ double bits_of(double nats) {
 State carried(const Model& from, const State& state, const Model& to) {
     State out{to.neutral(), {}};
     for (std::size_t i = 0; i < to.parameters().size(); ++i)
-        if (const int index = from.find(to.parameters()[i].name); index >= 0)
-            out.values[i] = state.values[static_cast<std::size_t>(index)];
+        if (const auto index = from.find(to.parameters()[i].name)) out.values[i] = state.values[*index];
     for (const Observable& observable : to.observables()) {
         NoiseParameters noise;
         for (std::size_t o = 0; o < from.observables().size(); ++o)

@@ -91,7 +91,7 @@ Verdict analyse(const Experiment& experiment, const Options& options) {
     std::vector<double> score;
     for (const auto& view : views)
         score.push_back(view->first());
-    const auto best = static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(score) - score.begin());
     Verdict verdict = views[best]->verdict();
     if (views.size() == 1) return verdict;
     if (verdict.decision == Decision::NoEffect) {

@@ -4,6 +4,7 @@
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit/intervals.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +13,7 @@ namespace puckloop::gap {
 
 namespace {
 
-bool among(const std::vector<std::size_t>& list, std::size_t one) {
-    return std::find(list.begin(), list.end(), one) != list.end();
-}
+using stats::contains;
 
 std::string name_of(const Study& study, std::size_t candidate) {
     return study.candidates()[candidate].effect->name;
@@ -37,7 +36,8 @@ void add_nuisances(const Study& study, Chosen& chosen) {
     if (fit.effects.empty()) return;
     for (std::size_t i = 0; i < study.candidates().size(); ++i) {
         const Candidate& candidate = study.candidates()[i];
-        if (!candidate.effect->fitted_along || !candidate.remark.empty() || among(fit.effects, i)) continue;
+        if (!candidate.effect->fitted_along || !candidate.remark.empty() || contains(fit.effects, i))
+            continue;
         auto set = fit.effects;
         set.push_back(i);
         Fit wider = study.fit_set(set, fit.fitted.state);
@@ -56,7 +56,7 @@ bool weigh_again(const Study& study, Chosen& chosen) {
         for (Trial& step : selection.steps) {
             const Fit fewer = without_effects(study, selection.chosen, {step.effect});
             step.delta_bic = fewer.bic - selection.chosen.bic;
-            step.held = gain_of(gains_by_block(study.blocks(), study.hold_out(fewer), selection.held_chosen));
+            step.held = study.gain(study.hold_out(fewer), selection.held_chosen);
             if (step.held.sum < selection.steps[weakest].held.sum)
                 weakest = static_cast<std::size_t>(&step - selection.steps.data());
         }
@@ -82,7 +82,7 @@ Chosen chosen_of(const Study& study, Selection selection) {
 
 std::optional<Chosen> without_doubted(const Study& study, const Chosen& all,
                                       const std::vector<std::size_t>& doubted, const std::string& doubt) {
-    if (among(doubted, all.selection.steps.front().effect)) return std::nullopt;
+    if (contains(doubted, all.selection.steps.front().effect)) return std::nullopt;
     Chosen rest{all.selection, {}, {}};
     Selection& selection = rest.selection;
     selection.chosen = without_effects(study, selection.chosen, doubted);
@@ -91,7 +91,7 @@ std::optional<Chosen> without_doubted(const Study& study, const Chosen& all,
         selection.trials[one].remark = "comes nearest to what is left, but " + doubt;
         rest.changes.push_back({name_of(study, one), doubt});
     }
-    std::erase_if(selection.steps, [&](const Trial& step) { return among(doubted, step.effect); });
+    std::erase_if(selection.steps, [&](const Trial& step) { return contains(doubted, step.effect); });
     if (!weigh_again(study, rest)) return std::nullopt;
     add_nuisances(study, rest);
     return rest;

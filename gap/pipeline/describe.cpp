@@ -30,7 +30,7 @@ const Effect& effect_of(const Study& study, std::size_t candidate) {
 }
 
 FittedParameter parameter_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j) {
-    const auto index = static_cast<std::size_t>(fit.freed[j].index);
+    const auto index = fit.freed[j].index;
     const ModelParameter& parameter = study.model().parameters()[index];
     const Interval interval = interval_of(study, fit, precision, j);
     // A value that the solver left beside nothing, far below what the data could show, is nothing.
@@ -56,8 +56,7 @@ Cause cause_of(const Study& study, const Fit& fit, const Precision& precision, s
         for (std::size_t j = 0; j < fit.freed.size(); ++j)
             if (fit.freed[j].index == freed.index)
                 cause.parameters.push_back(parameter_of(study, fit, precision, j));
-    const auto form =
-        std::find_if(forms.begin(), forms.end(), [&](const auto& one) { return one.first == candidate; });
+    const auto form = std::ranges::find_if(forms, [&](const auto& one) { return one.first == candidate; });
     if (form != forms.end()) cause.form = form_words(form->second);
     cause.sentence = cause_sentence(cause);
     return cause;
@@ -81,7 +80,7 @@ void add_ends_of_range(const Study& study, const Fit& fit, Verdict& verdict) {
     for (const Freed& freed : fit.freed) {
         const double edge = end_of_range(study, fit, freed);
         if (std::isnan(edge)) continue;
-        const ModelParameter& parameter = study.model().parameters()[static_cast<std::size_t>(freed.index)];
+        const ModelParameter& parameter = study.model().parameters()[freed.index];
         verdict.cautions.push_back(fmt::format("{} stands at the end of its plausible range ({}): it was "
                                                "stopped there, so its value and its cause are doubtful",
                                                parameter.name, quantity(edge, parameter.unit)));
@@ -93,8 +92,8 @@ void add_ends_of_range(const Study& study, const Fit& fit, Verdict& verdict) {
 void pass_over_empty(Verdict& verdict) {
     for (std::size_t k = 1; k < verdict.causes.size(); ++k) {
         const Cause& cause = verdict.causes[k];
-        if (!std::all_of(cause.parameters.begin(), cause.parameters.end(),
-                         [](const auto& p) { return p.low <= p.neutral && p.neutral <= p.high; }))
+        if (!std::ranges::all_of(cause.parameters,
+                                 [](const auto& p) { return p.low <= p.neutral && p.neutral <= p.high; }))
             continue;
         verdict.cautions.push_back(
             fmt::format("{}: its interval holds the simulator's value, so it may be none", cause.name));
@@ -147,9 +146,7 @@ void add_tried(const Study& study, const Selection& selection, Verdict& verdict)
 /// What fits best where few runs show it, and so gains nothing on runs that were not fitted.
 void add_few_runs_caution(const Study& study, const Selection& selection, Verdict& verdict) {
     if (verdict.decision != Decision::Unexplained || !verdict.nearest.empty()) return;
-    const auto best =
-        std::max_element(selection.trials.begin(), selection.trials.end(),
-                         [](const Trial& a, const Trial& b) { return a.delta_bic < b.delta_bic; });
+    const auto best = std::ranges::max_element(selection.trials, {}, &Trial::delta_bic);
     if (best == selection.trials.end() || !(best->delta_bic > thresholds::kPromising)) return;
     std::vector<std::string> names;
     for (const Trial& one : selection.trials)

@@ -22,10 +22,9 @@ void name_placements(const Experiment& experiment, Diagnosis& found) {
     for (const Series& series : found.series) {
         const std::string shape = placement_shape(experiment, series);
         if (shape.empty()) continue;
-        const auto serial =
-            std::find_if(found.leftovers.begin(), found.leftovers.end(), [&](const Leftover& one) {
-                return one.observable == series.observable && one.covariate == "previous sample";
-            });
+        const auto serial = std::ranges::find_if(found.leftovers, [&](const Leftover& one) {
+            return one.observable == series.observable && one.covariate == "previous sample";
+        });
         if (serial == found.leftovers.end()) continue;
         serial->covariate = kPlacementCovariate;
         serial->shape = shape;
@@ -82,10 +81,8 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     const State &before = chosen.selection.none.fitted.state, &after = chosen.final.fitted.state;
     Diagnosis found;
     found.series = series_of(study.model(), before, after);
-    std::vector<double> quanta;
-    for (const Observable& observable : study.model().observables())
-        quanta.push_back(observable.instrument.quantum);
-    found.leftovers = leftovers_of(study.experiment(), found.series, quanta, seed, thresholds::kReported);
+    const auto& observables = study.model().observables();
+    found.leftovers = leftovers_of(study.experiment(), observables, found.series, seed);
     name_placements(study.experiment(), found);
     found.free_forms = free_forms_of(study.experiment(), study.model(), after, seed);
     found.by_runs = left_by_runs(study, after);
@@ -93,19 +90,16 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     for (const Trial& step : chosen.selection.steps)
         found.forms.emplace_back(step.effect,
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
-    const auto& observables = study.model().observables();
-    if (std::any_of(observables.begin(), observables.end(), is_replicated)) {
+    if (std::ranges::any_of(observables, is_replicated)) {
         found.predictive = predictive_checks(study, chosen.final, !chosen.final.effects.empty(), seed);
         const auto unlike = not_replicated(study, found.predictive);
         found.leftovers.insert(found.leftovers.end(), unlike.begin(), unlike.end());
     }
     found.structures = found.leftovers;
     const Selection& selection = chosen.selection;
-    for (const auto& more :
-         {found.by_runs.structures, wandering(study, selection.chosen, thresholds::kReported)})
+    for (const auto& more : {found.by_runs.structures, wandering(study, selection.chosen)})
         found.leftovers.insert(found.leftovers.end(), more.begin(), more.end());
-    std::stable_sort(found.leftovers.begin(), found.leftovers.end(),
-                     [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
+    std::ranges::stable_sort(found.leftovers, {}, &Leftover::p_value);
     return found;
 }
 

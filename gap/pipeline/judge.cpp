@@ -39,11 +39,9 @@ void ask_each(const Study& study, const Judging& how, Judged& result) {
            result);
 }
 
-void ask_roles(const Study& study, const Judging& how, Judged& result) {
+OutOfRole roles(const Study& study, const Judging& how, const Judged& result) {
     const Selection& selection = result.chosen.selection;
-    let_go(study, how,
-           out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed),
-           result);
+    return out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed);
 }
 
 std::string confirmation(const Study& study, const Judging& how, const Judged& result) {
@@ -52,11 +50,7 @@ std::string confirmation(const Study& study, const Judging& how, const Judged& r
 
 /// What has not been asked, since something spoke before it.
 void ask_the_rest(const Study& study, const Judging& how, Judged& result) {
-    const Selection& selection = result.chosen.selection;
-    if (result.grounds.out_of_role.empty())
-        result.grounds.out_of_role =
-            out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed)
-                .why;
+    if (result.grounds.out_of_role.empty()) result.grounds.out_of_role = roles(study, how, result).why;
     if (result.grounds.not_confirmed.empty()) result.grounds.not_confirmed = confirmation(study, how, result);
 }
 
@@ -69,7 +63,7 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
     Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
     const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
     if (goes_on()) ask_each(study, how, result);
-    if (goes_on()) ask_roles(study, how, result);
+    if (goes_on()) let_go(study, how, roles(study, how, result), result);
     if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
     result.doubt = doubt_of(g);
     if (how.ask_all && how.ask && !result.doubt.empty()) ask_the_rest(study, how, result);

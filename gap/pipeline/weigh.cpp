@@ -1,6 +1,5 @@
 #include "gap/pipeline/weigh.h"
 
-#include "gap/decide/range_end.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/evidence/criterion.h"
@@ -17,18 +16,13 @@ namespace puckloop::gap {
 namespace {
 
 double cost_at(const Study& study, const State& state) {
-    Prediction prediction;
-    double sum = 0.0;
-    for (const RowCosts& costs : costs_at(study.model(), state, prediction))
-        for (const double cost : costs.cost)
-            sum += cost;
-    return sum;
+    return cost_of(study.model(), state, study.model().predicted(state.values));
 }
 
 /// Does a parameter make much of what is gained? Of an effect with several, one may stop at its end beside
 /// the one that explains. With it back at neutral and nothing else fitted again, this errs towards yes.
 bool carries(const Study& study, const Chosen& chosen, const Freed& freed) {
-    const auto index = static_cast<std::size_t>(freed.index);
+    const auto index = freed.index;
     State without = chosen.final.fitted.state;
     without.values[index] = study.model().parameters()[index].neutral;
     const double best = cost_at(study, chosen.final.fitted.state),
@@ -38,15 +32,15 @@ bool carries(const Study& study, const Chosen& chosen, const Freed& freed) {
 
 bool stopped_at_end(const Study& study, const Chosen& chosen) {
     const auto& freed = chosen.final.freed;
-    return std::any_of(freed.begin(), freed.end(), [&](const Freed& one) {
+    return std::ranges::any_of(freed, [&](const Freed& one) {
         return !std::isnan(end_of_range(study, chosen.final, one)) && carries(study, chosen, one);
     });
 }
 
 bool all_in_rounding(const Study& study, const Fit& chosen) {
-    return !chosen.effects.empty() &&
-           std::all_of(chosen.effects.begin(), chosen.effects.end(),
-                       [&](std::size_t one) { return within_rounding(study, chosen, one); });
+    return !chosen.effects.empty() && std::ranges::all_of(chosen.effects, [&](std::size_t one) {
+        return within_rounding(study, chosen, one);
+    });
 }
 
 /// With fewer than three runs stretches of the same run are held out: a drift of that run predicts itself.
@@ -58,14 +52,14 @@ bool few_runs_disagree(const Study& study, const Selection& selection, std::uint
 
 bool any_adds_up(const Study& study) {
     const auto& all = study.model().observables();
-    return std::any_of(all.begin(), all.end(), adds_up);
+    return std::ranges::any_of(all, adds_up);
 }
 
 /// What functions of covariates gain of what does not add up, or the surest structure there may stand for.
 double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
     const auto& all = study.model().observables();
     const auto is_other = [&](const auto& one) {
-        return std::none_of(all.begin(), all.end(), [&](const Observable& observable) {
+        return std::ranges::none_of(all, [&](const Observable& observable) {
             return observable.name == one.observable && !adds_up(observable);
         });
     };
@@ -84,16 +78,29 @@ void take_structure(const Diagnosis& diagnosis, Grounds& g) {
     };
     const auto other = [&](const Leftover& one) { return sure(one) && one.covariate != kWanderCovariate; };
     const auto& left = diagnosis.leftovers;
-    const bool shaped = std::any_of(diagnosis.free_forms.begin(), diagnosis.free_forms.end(), clear) ||
-                        std::any_of(left.begin(), left.end(), other);
-    g.structure = shaped || std::any_of(left.begin(), left.end(), sure);
+    const bool shaped = std::ranges::any_of(diagnosis.free_forms, clear) || std::ranges::any_of(left, other);
+    g.structure = shaped || std::ranges::any_of(left, sure);
     g.only_wanders = g.structure && !shaped;
 }
 
 }  // namespace
 
+double range_end(double value, double low, double high, double neutral) {
+    const bool wide = low > 0 && high / low > thresholds::kWideRange;
+    const auto scaled = [wide](double one) { return wide ? std::log(one) : one; };
+    const double near = thresholds::kRangeEnd * (scaled(high) - scaled(low));
+    for (const double end : {low, high}) {
+        // Nothing, and all of a share, are ends of what there is, not of what is believed.
+        if (end == 0.0 || (end == 1.0 && low == 0.0)) continue;
+        const bool beside_neutral = (!wide || neutral > 0) && std::abs(scaled(end) - scaled(neutral)) <= near;
+        if (!beside_neutral && !(wide && value <= 0) && std::abs(scaled(value) - scaled(end)) < near)
+            return end;
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
 double end_of_range(const Study& study, const Fit& fit, const Freed& freed) {
-    const auto index = static_cast<std::size_t>(freed.index);
+    const auto index = freed.index;
     return range_end(fit.fitted.state.values[index], freed.low, freed.high,
                      study.model().parameters()[index].neutral);
 }
@@ -108,7 +115,7 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.causes = selection.steps.size();
     for (const Candidate& candidate : study.candidates())
         g.candidates += candidate.remark.empty() ? 1 : 0;
-    g.gain = gain_of(gains_by_block(study.blocks(), selection.held_none, selection.held_chosen));
+    g.gain = study.gain(selection.held_none, selection.held_chosen);
     g.assumed = fmt::format("{}", fmt::join(study.experiment().assumed, ", "));
     g.stopped_at_end = stopped_at_end(study, chosen);
     g.in_rounding = all_in_rounding(study, selection.chosen);

@@ -10,6 +10,12 @@ namespace puckloop::gap {
 /// Without what is dear and asked only of causes that stand so far: roles and confirmation (judge.h).
 Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& diagnosis, std::uint64_t seed);
 
+/// The end of the range [low, high] at which `value` stands, as a share of the range: of its logarithm where
+/// a range of one sign spans more than ten to one (20 to 2000 s), else of itself. NaN: at none. An end of 0
+/// is a mechanism that is not there, one of 1 above it all of a share, and one beside `neutral` is the
+/// simulator itself: none of them counts.
+double range_end(double value, double low, double high, double neutral);
+
 /// The end of its plausible range at which a fitted parameter stands; NaN: at none.
 double end_of_range(const Study& study, const Fit& fit, const Freed& freed);
 

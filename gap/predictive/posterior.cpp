@@ -40,8 +40,7 @@ std::vector<State> posterior_states(const Model& model, const std::vector<Freed>
             one = random.normal();
         Eigen::VectorXd proposed = best + root.matrixU().solve(normal);
         for (std::size_t j = 0; j < layout.size(); ++j) {
-            double low = 0.0, high = 0.0;
-            layout.bounds(j, low, high);
+            const auto [low, high] = layout.bounds(j);
             double& one = proposed[static_cast<Eigen::Index>(j)];
             one = folded(one, low, high);
         }

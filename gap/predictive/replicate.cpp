@@ -1,6 +1,7 @@
 #include "gap/predictive/replicate.h"
 
-#include "gap/fit/sums.h"
+#include "gap/fit/filter.h"
+#include "gap/fit/walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +13,6 @@ namespace {
 
 constexpr double kOnStep = 0.02;  // of a step: as near to a multiple as clean/quantum.cpp asks
 constexpr double kLeastScale = 1e-12;
-
-double of_row(const std::vector<double>& values, std::size_t i) {
-    return values.empty() ? 0.0 : values[i];
-}
 
 /// Student's t by Bailey's polar method (Math. Comput. 62, 1994): exact for any degrees of freedom.
 double student(double degrees, RandomStream& random) {

@@ -87,21 +87,18 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
                  "#rms after"});
     std::string tests;
     const stats::TestOptions options{.seed = verdict.seed, .permutations = 199};
-    std::vector<std::vector<Finding>> tables;
+    std::vector<std::vector<Finding>> before, after;
     for (const Series& series : verdict.series) {
         add_floor(experiment, series, floor);
-        tables.push_back(residual_structure(experiment, series, Stage::Before, options));
-        tables.push_back(residual_structure(experiment, series, Stage::After, options));
+        before.push_back(residual_structure(experiment, series, Stage::Before, options));
+        after.push_back(residual_structure(experiment, series, Stage::After, options));
     }
-    std::vector<std::vector<Finding>*> before, after;
-    for (std::size_t i = 0; i < tables.size(); i += 2)
-        before.push_back(&tables[i]), after.push_back(&tables[i + 1]);
     stats::adjust_together(before);
     stats::adjust_together(after);
     for (std::size_t i = 0; i < verdict.series.size(); ++i)
         tests +=
             fmt::format("<h3>{}</h3>\n{}", physics::escaped(plain_observable(verdict.series[i].observable)),
-                        tests_of(*before[i], *after[i]));
+                        tests_of(before[i], after[i]));
     return "<h2>Noise floor</h2>\n<p>Standard deviations: of repeats of one stimulus inside a run, of their "
            "means from run to run, and from differences of successive rows; no model can do better than the "
            "first two.</p>\n" +

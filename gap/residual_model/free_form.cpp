@@ -13,23 +13,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-using thresholds::kClearForm;
-using thresholds::kFar;
-using thresholds::kFormErrors;
-using thresholds::kLeastWild;
-using thresholds::kManyDeviations;
-using thresholds::kManyTimes;
-using thresholds::kWild;
+using namespace thresholds;
 
-constexpr std::size_t kTerms = 4;           // told, the largest first
+constexpr std::size_t kTerms = 4;           // reported, the largest first
 constexpr double kLeastTerm = 0.05;         // of the correction's variance
 constexpr std::ptrdiff_t kLeastEvents = 5;  // of the rarer kind: of fewer nothing is learnt
 constexpr std::size_t kMostRows = 12000;    // beyond, stretches are left out
@@ -55,13 +47,11 @@ Errors errors_of(const Observable& observable, const Predicted& predicted, const
     e.rows.trimmed = observable.noise != NoiseKind::Event;
     for (std::size_t i = 0; i < observable.y.size(); ++i) {
         const bool clipped = observable.instrument.at_end(observable.y[i]);
-        const double sd = observable.noise == NoiseKind::Event
-                              ? std::sqrt(std::max(predicted.mean[i] * (1 - predicted.mean[i]), 1e-6))
-                              : row_sd(observable, predicted, noise, i);
+        const double sd = row_sd(observable, predicted, noise, i);
         const bool begins = observable.noise == NoiseKind::Level && observable.starts[i] != 0;
-        e.rows.error.push_back(begins     ? kNan
+        e.rows.error.push_back(begins     ? NAN
                                : whitened ? costs.innovation[i]
-                               : clipped  ? kNan
+                               : clipped  ? NAN
                                           : (observable.y[i] - predicted.mean[i]) / sd);
         // Over missing rows less is carried over than from row to row: nothing is taken to be.
         const bool next = observable.steps.empty() || observable.steps[i] == 1;
@@ -94,7 +84,7 @@ std::vector<stats::Component> turned_with_robot(const Experiment& experiment, co
     std::vector<double> along, across;
     for (std::size_t i = 0; i < errors.at.run.size(); ++i) {
         const auto& theta = experiment.runs[errors.at.run[i]].column("theta_rad");
-        const double heading = theta.empty() ? kNan : theta[errors.at.row[i]];
+        const double heading = theta.empty() ? NAN : theta[errors.at.row[i]];
         const double c = std::isfinite(heading) ? std::cos(heading) : 0.0,
                      s = std::isfinite(heading) ? std::sin(heading) : 0.0;
         along.push_back(i < rows_of_x ? c : s);
@@ -138,13 +128,11 @@ FreeFormTerm term_of(const stats::Component& component, const std::vector<double
     FreeFormTerm term;
     term.over = component.name + component.qualifier;
     term.share = share;
-    std::vector<double> sums(static_cast<std::size_t>(component.cells), 0.0), weights = sums;
-    for (std::size_t i = 0; i < correction.size(); ++i) {
-        if (component.cell[i] < 0) continue;
-        const double weight = component.weight.empty() ? 1.0 : component.weight[i];
-        sums[static_cast<std::size_t>(component.cell[i])] += weight * correction[i] * scale[i];
-        weights[static_cast<std::size_t>(component.cell[i])] += weight * weight;
-    }
+    const auto weight = [&](std::size_t i) { return stats::weight_of(component, i); };
+    const auto sums = stats::sums_of_cells(
+                   component, [&](std::size_t i) { return weight(i) * correction[i] * scale[i]; }),
+               weights =
+                   stats::sums_of_cells(component, [&](std::size_t i) { return weight(i) * weight(i); });
     stats::Profile profile;
     for (std::size_t k = 0; k < sums.size(); ++k) {
         if (!(weights[k] > 0)) continue;
@@ -156,7 +144,7 @@ FreeFormTerm term_of(const stats::Component& component, const std::vector<double
         profile.error.push_back(0.0);
     }
     if (term.values.empty()) return term;
-    const auto [low, high] = std::minmax_element(term.values.begin(), term.values.end());
+    const auto [low, high] = std::ranges::minmax_element(term.values);
     const auto at = [&](auto one) { return term.where[static_cast<std::size_t>(one - term.values.begin())]; };
     term.shape =
         fmt::format("{:+.3g} {} at {}, {:+.3g} {} at {}", *high, unit, at(high), *low, unit, at(low));
@@ -203,8 +191,8 @@ bool beyond_exchanged(double gain, const Errors& errors, const std::vector<stats
 }
 
 /// `law`: the errors follow one, so that they may be exchanged.
-FreeForm told(const Errors& errors, const std::vector<stats::Component>& components, std::uint64_t seed,
-              bool law = true) {
+FreeForm form_of(const Errors& errors, const std::vector<stats::Component>& components, std::uint64_t seed,
+                 bool law = true) {
     const stats::Boosted fit = stats::boosted(errors.rows, components, seed);
     FreeForm form;
     form.observable = errors.observable;
@@ -213,10 +201,8 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
     form.gain = gain.sum;
     form.sd = gain.sd;
     const double all = std::accumulate(fit.weight.begin(), fit.weight.end(), 0.0);
-    std::vector<std::size_t> order(components.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return fit.weight[a] > fit.weight[b]; });
+    const auto order = stats::ordered(
+        components.size(), [&](std::size_t a, std::size_t b) { return fit.weight[a] > fit.weight[b]; });
     double squares = 0.0, rows = 0.0;
     for (std::size_t i = 0; i < fit.correction.size(); ++i)
         if (std::isfinite(errors.rows.error[i])) {
@@ -266,9 +252,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     FreeForm form;
     form.observable = "outliers of " + errors.observable;
     form.gain = -INFINITY;
-    std::vector<double> known;
-    for (const double error : errors.rows.error)
-        if (std::isfinite(error)) known.push_back(error);
+    const std::vector<double> known = stats::finite(errors.rows.error);
     const double unit = std::max(stats::robust_scale(known), 1.0);
     double low = 0.0, high = 0.0, far = 0.0;  // low and high: stretches of wild values count once
     double last = 0.0, rows = 0.0;
@@ -295,7 +279,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     errors.unit = "of the readings";
     errors.rows.carry = 0.0;
     errors.rows.trimmed = false;
-    form = told(errors, components, seed, false);
+    form = form_of(errors, components, seed, false);
     form.wild = true;
     form.spells = spells;
     const bool one_sided = std::pow(0.5, low + high - 1) < thresholds::kSure && std::min(low, high) == 0;
@@ -313,8 +297,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
 /// Events that (nearly) always or never happen have no noise to measure a correction by.
 bool enough_events(const Observable& observable) {
     if (observable.noise != NoiseKind::Event) return true;
-    const auto yes =
-        std::count_if(observable.y.begin(), observable.y.end(), [](double y) { return y > 0.5; });
+    const auto yes = std::ranges::count_if(observable.y, [](double y) { return y > 0.5; });
     const auto no = static_cast<std::ptrdiff_t>(observable.y.size()) - yes;
     return std::min(yes, no) >= kLeastEvents;
 }
@@ -323,19 +306,16 @@ bool enough_events(const Observable& observable) {
 
 std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& model, const State& state,
                                     std::uint64_t seed, std::span<const std::string> only) {
-    Prediction prediction;
+    const Prediction prediction = model.predicted(state.values);
     const auto costs = costs_at(model, state, prediction);
     std::vector<FreeForm> forms;
     std::vector<Errors> track;
     for (std::size_t o = 0; o < model.observables().size(); ++o) {
         const Observable& observable = model.observables()[o];
-        if (!only.empty() && std::find(only.begin(), only.end(), observable.name) == only.end()) continue;
+        if (!only.empty() && !stats::contains(only, observable.name)) continue;
         if (observable.fixed_sd > 0 || observable.y.size() > 4 * kMostRows) continue;
         if (!enough_events(observable)) continue;
-        // Of a sum whose own noise is less than its rounding, rows say what the rounding says.
-        if (observable.noise == NoiseKind::Level &&
-            std::exp(state.noise[o].log_sd) < thresholds::kFineNoise * observable.instrument.quantum)
-            continue;
+        if (is_rounding(observable, state.noise[o])) continue;
         Errors errors = errors_of(observable, prediction[o], state.noise[o], costs[o]);
         if (observable.name == "x_m" || observable.name == "y_m") {
             track.push_back(std::move(errors));
@@ -343,13 +323,13 @@ std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& m
         }
         auto components = free_form_cells(experiment, errors.at, errors.starts);
         if (observable.noise == NoiseKind::Level) {
-            FreeForm rows = told(errors, components, seed),
+            FreeForm rows = form_of(errors, components, seed),
                      sums = sum_form_of(experiment, model, state, prediction, o, components, seed);
             forms.push_back(sums.gain > rows.gain ? std::move(sums) : std::move(rows));
             continue;
         }
         if (observable.noise == NoiseKind::Carry) add_proportional(errors, components);
-        forms.push_back(told(errors, components, seed));
+        forms.push_back(form_of(errors, components, seed));
         if (observable.noise == NoiseKind::Carry) forms.push_back(wild_form(errors, components, seed));
     }
     if (track.size() == 2) {
@@ -357,13 +337,12 @@ std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& m
         const std::size_t rows_of_x = both.rows.error.size();
         append(both, track.back());
         both.observable = "place";
-        forms.push_back(told(
+        forms.push_back(form_of(
             both,
             turned_with_robot(experiment, both, rows_of_x, free_form_cells(experiment, both.at, both.starts)),
             seed));
     }
-    std::stable_sort(forms.begin(), forms.end(),
-                     [](const FreeForm& a, const FreeForm& b) { return a.gain > b.gain; });
+    std::ranges::stable_sort(forms, std::ranges::greater{}, &FreeForm::gain);
     return forms;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The free-form residual model: what is left after the named effects, as step functions over covariates,
-// their pairs, what they were lately, and the place in the run. It comes last, is told as unexplained, and
-// names nothing.
+// their pairs, what they were lately, and the place in the run. It comes last, is reported as unexplained,
+// and names nothing.
 
 #include "gap/fit/fit.h"
 #include "gap/verdict/verdict.h"

@@ -2,13 +2,13 @@
 
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/stats/profile.h"
+#include "gap/stats/robust.h"
 #include "gap/stats/series.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace puckloop::gap {
@@ -19,7 +19,6 @@ using stats::Component;
 using stats::Covariate;
 using stats::CovariateKind;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFine = 12, kMiddle = 8, kCoarse = 5;  // bins of a covariate alone, with its past, with another
 constexpr int kFinest = 40;                          // of a covariate alone, for what ripples
 constexpr int kPlaces = 60;                          // of a run
@@ -31,23 +30,16 @@ constexpr double kStepsOfATurn = 1000;                  // of the motor, of one 
 /// Bins that leave missing values out. A label's values are its bins.
 Component cells_of(const std::string& name, const std::vector<double>& values, int bins, bool label,
                    const std::vector<std::string>& labels = {}) {
-    std::vector<double> known;
-    for (const double value : values)
-        if (std::isfinite(value)) known.push_back(value);
     Component c;
     c.name = name;
     c.ordered = !label;
     const std::vector<int> of_known =
-        stats::bins_of(known, c.cells, bins, label ? kFine : std::max(bins, kMiddle));
+        stats::bins_of(stats::finite(values), c.cells, bins, label ? kFine : std::max(bins, kMiddle));
     std::size_t next = 0;
     for (const double value : values)
         c.cell.push_back(std::isfinite(value) ? of_known[next++] : -1);
-    std::vector<double> sums(static_cast<std::size_t>(c.cells), 0.0), counts = sums;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (c.cell[i] >= 0) {
-            sums[static_cast<std::size_t>(c.cell[i])] += values[i];
-            counts[static_cast<std::size_t>(c.cell[i])] += 1;
-        }
+    const auto sums = stats::sums_of_cells(c, [&](std::size_t i) { return values[i]; }),
+               counts = stats::sums_of_cells(c, [](std::size_t) { return 1.0; });
     for (std::size_t k = 0; k < sums.size(); ++k) {
         c.at.push_back(sums[k] / std::max(counts[k], 1.0));
         const auto code = static_cast<std::size_t>(std::max(c.at.back(), 0.0));
@@ -65,7 +57,7 @@ Component finer(Component c) {
 
 /// So few that each is a bin of its own.
 bool few_values(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     return std::unique(values.begin(), values.end()) - values.begin() <= kFine;
 }
 
@@ -97,7 +89,7 @@ Lately lately(const std::vector<double>& x, const std::vector<double>& time,
             begin = changed = i;
             ever = false;
         }
-        out.before.push_back(i > begin ? x[i - 1] : kNan);
+        out.before.push_back(i > begin ? x[i - 1] : NAN);
         double low = x[i], high = x[i];
         for (std::size_t k = i - std::min(kLately - 1, i - begin); k < i; ++k) {
             low = std::fmin(low, x[k]);
@@ -109,7 +101,7 @@ Lately lately(const std::vector<double>& x, const std::vector<double>& time,
             changed = i;
             ever = true;
         }
-        out.since.push_back(ever ? time[i] - time[changed] : kNan);
+        out.since.push_back(ever ? time[i] - time[changed] : NAN);
     }
     return out;
 }
@@ -123,29 +115,30 @@ double whole(double value, double grain) {
 /// Tracked place and wheel phase of a drive: what no single column of the commands says.
 void add_places(const Experiment& experiment, const Series& rows, std::vector<Covariate>& list) {
     if (experiment.kind != Kind::Motion) return;
-    Covariate x{"position x", CovariateKind::Number, {}, {}}, y{"position y", CovariateKind::Number, {}, {}},
-        out{"distance from the origin", CovariateKind::Number, {}, {}},
-        outward{"heading relative to the direction away from the origin", CovariateKind::Number, {}, {}},
-        left{"phase of the left wheel", CovariateKind::Number, {}, {}},
-        right{"phase of the right wheel", CovariateKind::Number, {}, {}};
+    std::vector<Covariate> all;
+    for (const char* name : {"position x", "position y", "distance from the origin",
+                             "heading relative to the direction away from the origin",
+                             "phase of the left wheel", "phase of the right wheel"})
+        all.push_back({name, CovariateKind::Number, {}, {}});
     for (std::size_t i = 0; i < rows.run.size(); ++i) {
         const Run& run = experiment.runs[rows.run[i]];
         const auto value = [&](const char* name) {
             const auto& column = run.column(name);
-            return column.empty() ? kNan : column[rows.row[i]];
+            return column.empty() ? NAN : column[rows.row[i]];
         };
-        const double at_x = whole(value("x_m"), kPlaceGrain), at_y = whole(value("y_m"), kPlaceGrain);
-        x.value.push_back(at_x);
-        y.value.push_back(at_y);
-        out.value.push_back(whole(std::hypot(at_x, at_y), kPlaceGrain));
-        outward.value.push_back(
-            whole(std::remainder(value("theta_rad") - std::atan2(at_y, at_x), 2 * std::numbers::pi),
-                  kHeadingGrain));
-        left.value.push_back(std::remainder(value("steps_left"), kStepsOfATurn));
-        right.value.push_back(std::remainder(value("steps_right"), kStepsOfATurn));
+        const double x = whole(value("x_m"), kPlaceGrain), y = whole(value("y_m"), kPlaceGrain);
+        const double outward = std::remainder(value("theta_rad") - std::atan2(y, x), 2 * std::numbers::pi);
+        const double values[] = {x,
+                                 y,
+                                 whole(std::hypot(x, y), kPlaceGrain),
+                                 whole(outward, kHeadingGrain),
+                                 std::remainder(value("steps_left"), kStepsOfATurn),
+                                 std::remainder(value("steps_right"), kStepsOfATurn)};
+        for (std::size_t k = 0; k < all.size(); ++k)
+            all[k].value.push_back(values[k]);
     }
-    for (Covariate* one : {&x, &y, &out, &outward, &left, &right})
-        if (stats::varies(one->value)) list.push_back(std::move(*one));
+    for (Covariate& one : all)
+        if (stats::varies(one.value)) list.push_back(std::move(one));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "gap/fit/sum_response.h"
 #include "gap/stats/parts.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/series.h"
 #include "gap/verdict/verdict.h"
 
 #include <fmt/format.h>
@@ -18,8 +19,7 @@ namespace puckloop::gap {
 
 namespace {
 
-using thresholds::kClearForm;
-using thresholds::kFormErrors;
+using namespace thresholds;
 
 constexpr double kTrim = 4.0;             // deviations
 constexpr std::size_t kKept = 60;         // columns that a pursuit looks at, the best by themselves
@@ -27,7 +27,6 @@ constexpr std::size_t kMostTerms = 4;     // of a pursuit
 constexpr double kMostDeviations = 10.0;  // that a term may move an innovation, root mean square
 constexpr Effort kEffort{.iterations = 12};
 constexpr std::size_t kManyRows = 6000;
-constexpr std::size_t kFolds = 6;               // runs are held out in
 constexpr double kStill = 1e-9;                 // root mean square of increments: nothing moves
 constexpr double kCalmer[] = {1.0, 0.1, 0.01};  // shares of the fitted drift; structure looks like drift
 
@@ -107,13 +106,12 @@ class Columns {
             }
             if (square > 1e-6 * square_[k].sum()) all.emplace_back(pull * pull / square, k);
         }
-        std::stable_sort(all.begin(), all.end(),
-                         [](const auto& x, const auto& y) { return x.first > y.first; });
+        std::ranges::stable_sort(all, [](const auto& x, const auto& y) { return x.first > y.first; });
         if (all.size() > kKept) all.resize(kKept);
         std::vector<std::size_t> kept;
         for (const auto& [score, k] : all)
             kept.push_back(k);
-        std::sort(kept.begin(), kept.end());  // cells of a component together
+        std::ranges::sort(kept);  // cells of a component together
         return kept;
     }
 
@@ -219,10 +217,7 @@ struct View {
 
     View(const Observable& observable, const Predicted& predicted, NoiseParameters noise, double calmer)
         : response(observable, predicted, calmed(noise, calmer)), target(response.innovations()) {
-        std::vector<double> known;
-        for (const double z : target)
-            if (std::isfinite(z)) known.push_back(z);
-        const double limit = kTrim * std::max(stats::robust_scale(known), 1e-9);
+        const double limit = kTrim * std::max(stats::robust_scale(target), 1e-9);
         for (double& z : target) {
             used.push_back(std::isfinite(z) ? 1 : 0);
             z = used.back() != 0 ? std::clamp(z, -limit, limit) : 0.0;
@@ -315,8 +310,8 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
     form.observable = observable.name;
     form.unit = observable.unit;
     form.gain = -INFINITY;
-    const auto parts = stats::parts_of(std::vector<int>(observable.run.begin(), observable.run.end()), kFolds,
-                                       seed, likeness_of(experiment));
+    const auto parts = stats::parts_of(std::vector<int>(observable.run.begin(), observable.run.end()), seed,
+                                       likeness_of(experiment));
     if (cells.empty() || parts.folds < 2) return form;
     const auto amounts = amounts_of(model, prediction, o);
     std::vector<View> views;
@@ -335,17 +330,13 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
             const WithColumns with(observable, prediction[o], from, terms);
             std::vector<Freed> freed;
             for (std::size_t k = 0; k < terms.size(); ++k) {
-                Freed one;
-                one.index = static_cast<int>(k);
-                one.low = -kMostDeviations * from.size_of(terms[k]);
-                one.high = -one.low;
-                one.prior_sd = from.size_of(terms[k]);
-                freed.push_back(one);
+                const double size = from.size_of(terms[k]);
+                freed.push_back({k, -kMostDeviations * size, kMostDeviations * size, size});
             }
             State start{with.neutral(), {state.noise[o]}};
             Correction made{&from, std::move(terms), fit(with, freed, start, weights, kEffort), 0.0, {}};
-            Prediction own;
-            made.cost = costs_at(with, made.fitted.state, own).front().cost;
+            const State& end = made.fitted.state;
+            made.cost = costs_at(with, end, with.predicted(end.values)).front().cost;
             made.merit = made.fitted.log_likelihood - from.chance() * static_cast<double>(made.terms.size());
             return made;
         };
@@ -354,7 +345,7 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
         std::vector<std::vector<std::size_t>> seen;
         for (std::size_t v = 0; v < views.size(); ++v) {
             auto terms = pursued(columns[v], views[v].target, views[v].used, parts, held);
-            if (terms.empty() || std::find(seen.begin(), seen.end(), terms) != seen.end()) continue;
+            if (terms.empty() || stats::contains(seen, terms)) continue;
             seen.push_back(terms);
             Correction one = corrected(columns[v], std::move(terms));
             if (one.merit > best.merit) best = std::move(one);

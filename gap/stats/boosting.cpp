@@ -23,10 +23,6 @@ constexpr std::size_t kKept = 40;    // components that stay in view between two
 constexpr double kLessCarry = 0.35;
 constexpr int kLookAgain = 10;  // steps
 
-double weight_of(const Component& component, std::size_t row) {
-    return component.weight.empty() ? 1.0 : component.weight[row];
-}
-
 /// Errors and cells freed of what is carried over: a row has its own cell and the one of the row before.
 class Design {
   public:
@@ -70,15 +66,15 @@ class Design {
                 q < 0 ? 0.0 : -carry_ * weight_of(c, i - 1)};
     }
 
-    /// What the rows that `learns` say of a correction in each row, in the row itself and in the next, to
+    /// How the rows that `learns` pull at a correction in each row, in the row itself and in the next, to
     /// which it is carried over: the same for every component, to be summed over cells.
     template <class Learns>
-    void gather(const std::vector<double>& rest, const Learns& learns, std::vector<double>& said) const {
-        said.assign(rest.size(), 0.0);
+    void gather(const std::vector<double>& rest, const Learns& learns, std::vector<double>& pulled) const {
+        pulled.assign(rest.size(), 0.0);
         for (std::size_t i = 0; i < rest.size(); ++i) {
             if (!learns(i)) continue;
-            said[i] += (follows(i) ? 1.0 : first_) * rest[i];
-            if (follows(i)) said[i - 1] -= carry_ * rest[i];
+            pulled[i] += (follows(i) ? 1.0 : first_) * rest[i];
+            if (follows(i)) pulled[i - 1] -= carry_ * rest[i];
         }
     }
 
@@ -198,7 +194,7 @@ class Booster {
         std::vector<std::pair<double, std::size_t>> won;
         std::vector<Eigen::VectorXd> moves(components_.size());
         design_.gather(
-            rest_, [this](std::size_t i) { return learns(i); }, said_);
+            rest_, [this](std::size_t i) { return learns(i); }, pulled_);
         for (const std::size_t g : view_) {
             if (inverse_[g].size() == 0) continue;
             const Eigen::VectorXd pull = pull_of(components_[g]);
@@ -206,8 +202,7 @@ class Booster {
             won.emplace_back(2 * moves[g].dot(pull) - moves[g].dot(gram_[g] * moves[g]), g);
         }
         if (won.empty()) return false;
-        std::stable_sort(won.begin(), won.end(),
-                         [](const auto& x, const auto& y) { return x.first > y.first; });
+        std::ranges::stable_sort(won, [](const auto& x, const auto& y) { return x.first > y.first; });
         if (won.front().first < kLeastWon * variance()) return false;
         if (taken_ % kLookAgain == 0 && won.size() > kKept) won.resize(kKept);
         view_.clear();
@@ -239,12 +234,12 @@ class Booster {
   private:
     bool learns(std::size_t i) const { return design_.used(i) && fold_[i] != held_; }
 
-    /// What the rows say of each cell.
+    /// How the rows pull at each cell.
     Eigen::VectorXd pull_of(const Component& c) {
         pulls_.assign(static_cast<std::size_t>(c.cells) + 1, 0.0);
         double* const at = pulls_.data() + 1;  // the first is of rows without a cell
-        for (std::size_t i = 0; i < said_.size(); ++i)
-            at[c.cell[i]] += weight_of(c, i) * said_[i];
+        for (std::size_t i = 0; i < pulled_.size(); ++i)
+            at[c.cell[i]] += weight_of(c, i) * pulled_[i];
         return Eigen::Map<const Eigen::VectorXd>(at, c.cells);
     }
 
@@ -258,7 +253,7 @@ class Booster {
     std::vector<Eigen::MatrixXd> gram_, inverse_;
     std::vector<Eigen::VectorXd> values_;
     std::vector<std::size_t> view_;
-    std::vector<double> said_, pulls_;
+    std::vector<double> pulled_, pulls_;
 };
 
 /// Held-out gain over no correction at the given carry, by block, for each number of steps.
@@ -272,7 +267,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     result.carry = rows.carry;
     result.correction.assign(n, 0.0);
     result.weight.assign(components.size(), 0.0);
-    const auto [fold, block, folds, blocks] = parts_of(rows.run, rows.folds, seed);
+    const auto [fold, block, folds, blocks] = parts_of(rows.run, seed);
     if (components.empty() || folds < 2) return result;
 
     // What a missing structure does to a fit is to make errors look as if they carried over.
@@ -306,7 +301,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
             }
         }
     }
-    // How many steps, and which carry: chosen for each fold by what the other folds say.
+    // How many steps, and which carry: chosen for each fold by the other folds.
     std::vector<std::size_t> fold_of(blocks, 0);
     for (std::size_t i = 0; i < n; ++i)
         fold_of[static_cast<std::size_t>(block[i])] = static_cast<std::size_t>(fold[i]);
@@ -334,7 +329,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     const Design design(rows, components, carries[c]);
     Booster booster(design, components, fold, -1, grams[c], strengths[c]);
     for (std::size_t m = 0; m < steps && booster.step(); ++m)
-        ++result.steps;
+        continue;
     for (std::size_t g = 0; g < components.size(); ++g) {
         const Eigen::VectorXd& values = booster.values()[g];
         if (values.size() == 0) continue;

@@ -24,19 +24,30 @@ struct Component {
     std::string qualifier{};  ///< " (40 bins)", " (across the heading)": not part of a cell's words
 };
 
+/// Sums of `value(row)` over the rows of each cell.
+template <class Value>
+std::vector<double> sums_of_cells(const Component& component, const Value& value) {
+    std::vector<double> sums(static_cast<std::size_t>(component.cells), 0.0);
+    for (std::size_t i = 0; i < component.cell.size(); ++i)
+        if (component.cell[i] >= 0) sums[static_cast<std::size_t>(component.cell[i])] += value(i);
+    return sums;
+}
+/// Weight of a component's correction in a row.
+inline double weight_of(const Component& component, std::size_t row) {
+    return component.weight.empty() ? 1.0 : component.weight[row];
+}
+
 struct ErrorRows {
     std::vector<double> error;  ///< in units of the noise; NaN: left out
     std::vector<char> follows;  ///< 1: carries over from the row before it in this list
     std::vector<int> run;
-    double carry = 0.0;     ///< share of the previous error kept, -1..1
-    bool trimmed = true;    ///< errors beyond four deviations are pulled in
-    std::size_t folds = 6;  ///< parts that are held out in turn; runs stay whole when there are three or more
+    double carry = 0.0;   ///< share of the previous error kept, -1..1
+    bool trimmed = true;  ///< errors beyond four deviations are pulled in
 };
 
 struct Boosted {
     /// Log score that held-out rows win, nats: a run each (or a stretch, where runs are few).
     std::vector<double> gains;
-    int steps = 0;                   ///< of the fit to all rows
     double carry = 0.0;              ///< that goes best with the correction
     std::vector<double> correction;  ///< a row each, in the error's unit; 0 where nothing is there
     std::vector<double> weight;      ///< a component each: variance of its part of the correction

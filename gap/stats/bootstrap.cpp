@@ -4,7 +4,7 @@
 #include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
 
-#include <limits>
+#include <cmath>
 #include <numeric>
 
 namespace puckloop::gap::stats {
@@ -12,7 +12,6 @@ namespace puckloop::gap::stats {
 namespace {
 constexpr std::size_t kEnoughRuns = 5;
 constexpr int kBandDraws = 200;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 std::vector<std::vector<std::size_t>> bootstrap_rows(const Series& series, int draws,
@@ -42,7 +41,7 @@ Band bootstrap_band(const Series& residual, const std::vector<double>& covariate
         for (const std::size_t i : rows)
             sum[static_cast<std::size_t>(bin[i])] += of[i], n[static_cast<std::size_t>(bin[i])] += 1;
         for (std::size_t b = 0; b < places; ++b)
-            sum[b] = n[b] > 0 ? sum[b] / n[b] : kNan;
+            sum[b] = n[b] > 0 ? sum[b] / n[b] : NAN;
         return sum;
     };
     std::vector<std::size_t> all(x.size());

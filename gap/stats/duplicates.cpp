@@ -21,7 +21,7 @@ constexpr double kSameShare = 1e-9;  // of the range
 double written_quantum(const std::vector<double>& values) {
     double quantum = 1.0;
     for (int decimals = 0; decimals <= kMostDecimals; ++decimals, quantum /= 10) {
-        const bool fits = std::all_of(values.begin(), values.end(), [quantum](double v) {
+        const bool fits = std::ranges::all_of(values, [quantum](double v) {
             const double steps = v / quantum;
             return !std::isfinite(v) ||
                    std::fabs(steps - std::round(steps)) < 1e-4 + 1e-12 * std::fabs(steps);
@@ -34,8 +34,8 @@ double written_quantum(const std::vector<double>& values) {
 /// Smallest difference between distinct values where values recur (counts, also after a change of unit);
 /// otherwise the decimal place they are written to.
 double quantum_of(std::vector<double> values) {
-    std::erase_if(values, [](double v) { return !std::isfinite(v); });
-    std::sort(values.begin(), values.end());
+    values = finite(values);
+    std::ranges::sort(values);
     const auto all = static_cast<double>(values.size());
     values.erase(std::unique(values.begin(), values.end()), values.end());
     if (values.size() < 2 || static_cast<double>(values.size()) > kRecurring * all)
@@ -87,8 +87,7 @@ std::size_t rows_in(const MeasuredRun& run) {
 }
 
 bool complete(const std::vector<double>& values) {
-    return !values.empty() &&
-           std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    return !values.empty() && std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
 }
 
 }  // namespace
@@ -114,7 +113,7 @@ std::vector<Copy> copies_in(const std::vector<MeasuredRun>& runs) {
     const double needed =
         kOnceInThousand + 2 * std::log2(static_cast<double>(std::max<std::size_t>(total, 2)));
     std::map<std::vector<double>, std::vector<Place>> seen;
-    std::set<std::vector<std::size_t>> inside;  // pairs that belong to a copy already told
+    std::set<std::vector<std::size_t>> inside;  // pairs that belong to a copy already found
     std::vector<Copy> copies;
     constexpr std::size_t kMostAlike = 8;  // rows that more than these share are levels, not copies
     for (std::size_t r = 0; r < runs.size(); ++r)

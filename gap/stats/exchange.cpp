@@ -4,6 +4,8 @@
 #include "gap/stats/shuffle.h"
 #include "gap/stats/tails.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -123,7 +125,7 @@ Pairs prepared(const Series& residual, const std::vector<double>& covariate) {
     if (rows.blocks.size() >= runs.size() + kFreeBlocksForWithin) {
         take_off_run_means(rows, runs);
     } else {
-        std::fill(rows.group.begin(), rows.group.end(), 0);
+        std::ranges::fill(rows.group, 0);
         for (Stretch& b : rows.blocks)
             b.run = 0;
     }
@@ -170,6 +172,21 @@ double null_p(double observed, double units, const std::function<double(RandomSt
     const double counted = (hits + 1) / (drawn + 1);
     if (hits >= kHitsForCount || units < kUnitsForTail) return counted;
     return std::min(counted, fitted_tail(null, observed));
+}
+
+Finding begun(std::string_view test, std::string_view covariate, const Pairs& pairs) {
+    return {.test = std::string(test),
+            .covariate = std::string(covariate),
+            .units = static_cast<double>(pairs.blocks.size())};
+}
+
+Finding too_few(Finding finding, const Pairs& pairs) {
+    return not_asked(std::move(finding), fmt::format("too few independent values ({})", pairs.size()));
+}
+
+double beside_scatter(double effect, const Series& residual) {
+    const double scale = robust_scale(residual.value);
+    return scale > 0 ? std::fabs(effect) / scale : 0.0;
 }
 
 double slope_of(const Pairs& pairs) {

@@ -50,6 +50,14 @@ double fitted_tail(const std::vector<double>& null, double observed);
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
               const TestOptions& options, std::string_view stream);
 
+/// Units below which a test against a covariate is not asked.
+inline constexpr std::size_t kLeastUnits = 5;
+/// The finding of such a test, to be filled; or why it is not asked.
+Finding begun(std::string_view test, std::string_view covariate, const Pairs& pairs);
+Finding too_few(Finding finding, const Pairs& pairs);
+/// Size of an effect over the residual's robust scale; 0 where there is none.
+double beside_scatter(double effect, const Series& residual);
+
 /// Least squares of y on x; 0 where x does not vary.
 double slope_of(const Pairs& pairs);
 

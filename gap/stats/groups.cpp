@@ -5,64 +5,85 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace puckloop::gap::stats {
 
 namespace {
 
-struct GroupMeans {
-    std::map<int, double> sum, count;
+/// Which group each value belongs to, from 0.
+struct Groups {
+    std::vector<int> of;
+    std::vector<double> count;
 
-    void add(double label, double y) {
-        const int key = static_cast<int>(std::lround(label));
-        sum[key] += y;
-        count[key] += 1;
+    Groups(std::vector<int> numbers, std::size_t groups) : of(std::move(numbers)), count(groups, 0.0) {
+        for (const int group : of)
+            count[static_cast<std::size_t>(group)] += 1;
+    }
+    std::vector<double> sums(const std::vector<double>& y, double centre) const {
+        std::vector<double> sum(count.size(), 0.0);
+        for (std::size_t i = 0; i < y.size(); ++i)
+            sum[static_cast<std::size_t>(of[i])] += y[i] - centre;
+        return sum;
+    }
+    /// Of the squares about `centre`, those that lie between groups.
+    double between(const std::vector<double>& y, double centre) const {
+        double total = 0;
+        const std::vector<double> sum = sums(y, centre);
+        for (std::size_t g = 0; g < sum.size(); ++g)
+            if (count[g] > 0) total += sum[g] * sum[g] / count[g];
+        return total;
     }
 };
+
+/// Takes the share of variance between groups and its p.
+void judge(const Pairs& pairs, const Groups& groups, const TestOptions& options, std::string_view stream,
+           Finding& finding) {
+    const double centre = mean(pairs.y);
+    const auto between = [&](const std::vector<double>& y) { return groups.between(y, centre); };
+    double all = 0;
+    for (const double y : pairs.y)
+        all += (y - centre) * (y - centre);
+    finding.statistic = all > 0 ? between(pairs.y) / all : 0.0;
+    finding.p = permutation_p(pairs, between, options, stream);
+}
 
 /// Labels of units that mix two groups (a run mean over both) go to the nearer one.
 Finding compared(const Series& residual, const std::vector<double>& label, std::string_view test,
                  std::string_view name, const std::vector<std::string>& label_names,
                  const TestOptions& options) {
-    Finding finding{.test = std::string(test), .covariate = std::string(name)};
     Pairs pairs = prepared(residual, label);
     pairs.y = winsorised(pairs.y);
-    GroupMeans observed;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        observed.add(pairs.x[i], pairs.y[i]);
-    finding.units = static_cast<double>(pairs.blocks.size());
-    if (observed.count.size() < 2) return not_asked(finding, fmt::format("one {} only", name));
-    if (pairs.blocks.size() < observed.count.size() + 2)
-        return not_asked(finding, fmt::format("too few runs or blocks for {}", name));
-    const double centre = mean(pairs.y);
-    const auto between = [&](const std::vector<double>& y) {
-        GroupMeans means;
-        for (std::size_t i = 0; i < y.size(); ++i)
-            means.add(pairs.x[i], y[i] - centre);
-        double total = 0;
-        for (const auto& [key, sum] : means.sum)
-            total += sum * sum / means.count[key];
-        return total;
-    };
-    double all = 0;
-    for (const double y : pairs.y)
-        all += (y - centre) * (y - centre);
-    finding.statistic = all > 0 ? between(pairs.y) / all : 0.0;
-    finding.p = permutation_p(pairs, between, options, fmt::format("{}/{}", test, name));
-    int low = observed.sum.begin()->first, high = low;
-    const auto mean_of = [&](int key) { return observed.sum[key] / observed.count[key]; };
-    for (const auto& entry : observed.sum) {
-        if (mean_of(entry.first) < mean_of(low)) low = entry.first;
-        if (mean_of(entry.first) > mean_of(high)) high = entry.first;
+    Finding finding = begun(test, name, pairs);
+    std::map<long, int> number;
+    for (const double one : pairs.x)
+        number[std::lround(one)] = 0;
+    std::vector<long> key;
+    for (auto& [label_of, place] : number) {
+        place = static_cast<int>(key.size());
+        key.push_back(label_of);
     }
-    finding.effect = mean_of(high) - mean_of(low);
-    const double scale = robust_scale(residual.value);
-    finding.relative = scale > 0 ? finding.effect / scale : 0.0;
-    const auto called = [&](int key) {
-        const auto index = static_cast<std::size_t>(key);
-        return key >= 0 && index < label_names.size() ? label_names[index] : std::to_string(key);
+    if (key.size() < 2) return not_asked(finding, fmt::format("one {} only", name));
+    if (pairs.blocks.size() < key.size() + 2)
+        return not_asked(finding, fmt::format("too few runs or blocks for {}", name));
+    std::vector<int> group;
+    for (const double one : pairs.x)
+        group.push_back(number[std::lround(one)]);
+    const Groups groups(std::move(group), key.size());
+    judge(pairs, groups, options, fmt::format("{}/{}", test, name), finding);
+    std::vector<double> means = groups.sums(pairs.y, 0.0);
+    for (std::size_t g = 0; g < means.size(); ++g)
+        means[g] /= groups.count[g];
+    const auto low = std::ranges::min_element(means), high = std::ranges::max_element(means);
+    finding.effect = *high - *low;
+    finding.relative = beside_scatter(finding.effect, residual);
+    const auto called = [&](auto at) {
+        const long one = key[static_cast<std::size_t>(at - means.begin())];
+        const auto index = static_cast<std::size_t>(one);
+        return one >= 0 && index < label_names.size() ? label_names[index] : std::to_string(one);
     };
     finding.shape = fmt::format("differs by {}: highest {}, lowest {}", name, called(high), called(low));
     return finding;
@@ -74,6 +95,23 @@ Finding group_test(const Series& residual, const std::vector<int>& label, std::s
                    const std::vector<std::string>& label_names, const TestOptions& options) {
     return compared(residual, std::vector<double>(label.begin(), label.end()), "group", name, label_names,
                     options);
+}
+
+Finding shape_test(const Series& residual, const std::vector<double>& covariate, std::string_view name,
+                   const TestOptions& options) {
+    Pairs pairs = prepared(residual, covariate);
+    Finding finding = begun("shape", name, pairs);
+    if (pairs.size() < kLeastUnits) return too_few(finding, pairs);
+    pairs.y = winsorised(pairs.y);
+    int count = 0;
+    std::vector<int> bin = bins_of(pairs.x, count);
+    judge(pairs, {std::move(bin), static_cast<std::size_t>(count)}, options, fmt::format("shape/{}", name),
+          finding);
+    const Profile profile = profile_of(pairs.x, pairs.y);
+    finding.effect = profile.range();
+    finding.relative = beside_scatter(finding.effect, residual);
+    finding.shape = shape_words(profile, name);
+    return finding;
 }
 
 Finding reversal_test(const Series& residual, const std::vector<double>& covariate, std::string_view name,

@@ -3,13 +3,11 @@
 #include "gap/stats/robust.h"
 
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace puckloop::gap::stats {
 
 namespace {
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSecondDifference = 6.0;  // variance of y[i-1] - 2 y[i] + y[i+1] of white noise
 constexpr double kSameShare = 1e-9;        // of a covariate's range
 }  // namespace
@@ -19,7 +17,7 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
     for (std::size_t i = 0; i < measured.size(); ++i)
         if (std::isfinite(measured.value[i]) && stimulus[i] >= 0)
             values[stimulus[i]][measured.run[i]].push_back(measured.value[i]);
-    NoiseFloor floor{kNan, kNan, kNan};
+    NoiseFloor floor{NAN, NAN, NAN};
     double squares = 0, freedom = 0, between_squares = 0, between_freedom = 0;
     for (const auto& [number, by_run] : values) {
         std::vector<double> means;
@@ -32,7 +30,6 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
             floor.repeats += list.size();
         }
         if (means.size() < 2) continue;
-        ++floor.stimuli_in_runs;
         const double f = static_cast<double>(means.size() - 1);
         between_squares += f * std::pow(standard_deviation(means), 2);
         between_freedom += f;

@@ -10,10 +10,9 @@ namespace puckloop::gap::stats {
 struct NoiseFloor {
     double within_run = 0.0;    ///< deviation of repeats inside a run about their mean; NaN without repeats
     double between_runs = 0.0;  ///< deviation of the means of one stimulus from run to run; NaN without such
-    double differences =
-        0.0;                  ///< from second differences of successive rows: no repeats needed; NaN if short
+    /// From second differences of successive rows: no repeats needed; NaN if short.
+    double differences = 0.0;
     std::size_t repeats = 0;  ///< rows that are repeats of others in their run
-    std::size_t stimuli_in_runs = 0;  ///< stimuli met in two runs or more
 };
 
 /// `stimulus`: rows with equal numbers got the same stimulus (see stimulus_numbers); negative: none known.

@@ -12,6 +12,7 @@ namespace puckloop::gap::stats {
 
 namespace {
 
+constexpr std::size_t kFolds = 6;
 constexpr std::size_t kEnoughRuns = 3;
 constexpr std::size_t kStretches = 12;  // of a run, where runs are few
 
@@ -31,17 +32,16 @@ std::vector<std::size_t> dealt(const std::vector<int>& runs, const std::vector<s
 
 }  // namespace
 
-Parts parts_of(const std::vector<int>& run, std::size_t folds, std::uint64_t seed,
-               const std::vector<int>& likeness) {
+Parts parts_of(const std::vector<int>& run, std::uint64_t seed, const std::vector<int>& likeness) {
     const std::size_t n = run.size();
     Parts parts;
     std::vector<int> runs = run;
-    std::sort(runs.begin(), runs.end());
+    std::ranges::sort(runs);
     runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
     parts.fold.assign(n, 0);
     parts.block.assign(n, 0);
     const auto place = [&](int one) {
-        return static_cast<std::size_t>(std::lower_bound(runs.begin(), runs.end(), one) - runs.begin());
+        return static_cast<std::size_t>(std::ranges::lower_bound(runs, one) - runs.begin());
     };
     if (runs.size() >= kEnoughRuns) {
         std::vector<std::size_t> order(runs.size());
@@ -49,7 +49,7 @@ Parts parts_of(const std::vector<int>& run, std::size_t folds, std::uint64_t see
         RandomStream random(seed, "gap/free form");
         shuffle(std::span(order), random);
         if (!likeness.empty()) order = dealt(runs, order, likeness);
-        parts.folds = std::min(folds, runs.size());
+        parts.folds = std::min(kFolds, runs.size());
         parts.blocks = runs.size();
         for (std::size_t i = 0; i < n; ++i) {
             parts.block[i] = static_cast<int>(place(run[i]));
@@ -57,7 +57,7 @@ Parts parts_of(const std::vector<int>& run, std::size_t folds, std::uint64_t see
         }
         return parts;
     }
-    parts.folds = folds;
+    parts.folds = kFolds;
     parts.blocks = runs.size() * kStretches;
     std::vector<std::size_t> length(runs.size(), 0), seen(runs.size(), 0);
     for (const int one : run)

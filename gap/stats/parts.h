@@ -12,10 +12,9 @@ struct Parts {
     std::size_t folds = 0, blocks = 0;
 };
 
-/// At most `folds` parts. Runs stay whole when there are three or more; else each is cut into stretches.
+/// Six parts at most. Runs stay whole when there are three or more; else each is cut into stretches.
 /// `likeness`: a number for each run, the same for runs that repeat each other (run i has the i-th; empty:
 /// none do). Repeats are held out apart, so that what only they show can be learnt.
-Parts parts_of(const std::vector<int>& run, std::size_t folds, std::uint64_t seed,
-               const std::vector<int>& likeness = {});
+Parts parts_of(const std::vector<int>& run, std::uint64_t seed, const std::vector<int>& likeness = {});
 
 }  // namespace puckloop::gap::stats

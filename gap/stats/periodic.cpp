@@ -161,17 +161,12 @@ Finding periodic_test(const Series& residual, const std::vector<double>& time, c
     std::vector<Segment> segments = segments_of(residual, time);
     for (const Segment& s : segments)
         finding.units += static_cast<double>(s.value.size());
-    if (segments.empty()) {
-        finding.shape = "no stretch of 24 rows with rising time";
-        return finding;
-    }
+    if (segments.empty()) return not_asked(finding, "no stretch of 24 rows with rising time");
     const Spectrum spectrum(segments);
     std::size_t where = 0, ignored = 0;
     finding.statistic = highest_line(spectrum.power(segments), where);
-    if (spectrum.frequency().size() < 4 || finding.statistic == 0) {
-        finding.shape = "too few frequencies";
-        return finding;
-    }
+    if (spectrum.frequency().size() < 4 || finding.statistic == 0)
+        return not_asked(finding, "too few frequencies");
     const auto draw = [&](RandomStream& random) {
         for (Segment& s : segments)
             shuffle(std::span(s.value), random);
@@ -180,8 +175,7 @@ Finding periodic_test(const Series& residual, const std::vector<double>& time, c
     finding.p = null_p(finding.statistic, finding.units, draw, options, "periodic");
     const double frequency = spectrum.frequency()[where];
     finding.effect = amplitude_at(residual, time, frequency);
-    const double scale = robust_scale(residual.value);
-    finding.relative = scale > 0 ? finding.effect / scale : 0.0;
+    finding.relative = beside_scatter(finding.effect, residual);
     finding.shape = fmt::format("oscillates at {} Hz (period of {} rows)", plain(frequency),
                                 plain(1 / (frequency * spectrum.step())));
     return finding;

@@ -63,13 +63,13 @@ std::string course(const Profile& p, std::string_view covariate, bool rising) {
 
 double Profile::range() const {
     if (y.empty()) return 0.0;
-    const auto [low, high] = std::minmax_element(y.begin(), y.end());
+    const auto [low, high] = std::ranges::minmax_element(y);
     return *high - *low;
 }
 
 std::vector<int> bins_of(const std::vector<double>& x, int& count, int bins, int levels) {
     std::vector<double> distinct = x;
-    std::sort(distinct.begin(), distinct.end());
+    std::ranges::sort(distinct);
     std::vector<double> edges;  // upper ends of all bins but the last
     std::vector<double> sorted = distinct;
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
@@ -86,7 +86,7 @@ std::vector<int> bins_of(const std::vector<double>& x, int& count, int bins, int
     count = static_cast<int>(edges.size()) + 1;
     std::vector<int> bin(x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
-        bin[i] = static_cast<int>(std::lower_bound(edges.begin(), edges.end(), x[i]) - edges.begin());
+        bin[i] = static_cast<int>(std::ranges::lower_bound(edges, x[i]) - edges.begin());
     return bin;
 }
 
@@ -120,7 +120,7 @@ std::string shape_words(const Profile& p, std::string_view covariate) {
         return fmt::format("steps {} near {} {}", split.jump > 0 ? "up" : "down", covariate,
                            plain(0.5 * (p.x[split.after - 1] + p.x[split.after])));
     if (std::fabs(order) > 0.8) return course(p, covariate, order > 0);
-    const auto [low, high] = std::minmax_element(p.y.begin(), p.y.end());
+    const auto [low, high] = std::ranges::minmax_element(p.y);
     const auto inner = [&](auto at) { return at != p.y.begin() && at + 1 != p.y.end(); };
     const double ends = 0.5 * (p.y.front() + p.y.back());
     const auto at_x = [&](auto at) { return plain(p.x[static_cast<std::size_t>(at - p.y.begin())]); };

@@ -4,26 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <numeric>
 
 namespace puckloop::gap::stats {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFiveToNinetyFive = 2 * 1.645;  // the same, in standard deviations
 
-std::vector<double> finite(const std::vector<double>& values) {
-    std::vector<double> kept;
-    kept.reserve(values.size());
-    for (const double v : values)
-        if (std::isfinite(v)) kept.push_back(v);
-    return kept;
-}
-
 double sorted_quantile(const std::vector<double>& sorted, double q) {
-    if (sorted.empty()) return kNan;
+    if (sorted.empty()) return NAN;
     const double place = q * static_cast<double>(sorted.size() - 1);
     const auto low = static_cast<std::size_t>(place);
     const std::size_t high = std::min(low + 1, sorted.size() - 1);
@@ -32,15 +23,21 @@ double sorted_quantile(const std::vector<double>& sorted, double q) {
 
 }  // namespace
 
+std::vector<double> finite(const std::vector<double>& values) {
+    std::vector<double> kept;
+    std::ranges::copy_if(values, std::back_inserter(kept), [](double v) { return std::isfinite(v); });
+    return kept;
+}
+
 double mean(const std::vector<double>& values) {
     const std::vector<double> kept = finite(values);
-    if (kept.empty()) return kNan;
+    if (kept.empty()) return NAN;
     return std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
 }
 
 double standard_deviation(const std::vector<double>& values) {
     const std::vector<double> kept = finite(values);
-    if (kept.size() < 2) return kNan;
+    if (kept.size() < 2) return NAN;
     const double centre = mean(kept);
     double sum = 0;
     for (const double v : kept)
@@ -50,7 +47,7 @@ double standard_deviation(const std::vector<double>& values) {
 
 double quantile(std::vector<double> values, double q) {
     values = finite(values);
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     return sorted_quantile(values, q);
 }
 
@@ -67,13 +64,13 @@ double upper_median(std::vector<double> values) {
 
 double robust_scale(const std::vector<double>& values) {
     std::vector<double> kept = finite(values);
-    if (kept.size() < 2) return kNan;
+    if (kept.size() < 2) return NAN;
     const double centre = median(kept);
     std::vector<double> distance(kept.size());
     std::transform(kept.begin(), kept.end(), distance.begin(),
                    [centre](double v) { return std::fabs(v - centre); });
     if (const double mad = median(distance); mad > 0) return kMadToSigma * mad;
-    std::sort(kept.begin(), kept.end());
+    std::ranges::sort(kept);
     const double range = sorted_quantile(kept, 0.95) - sorted_quantile(kept, 0.05);
     return range > 0 ? range / kFiveToNinetyFive : standard_deviation(kept);
 }

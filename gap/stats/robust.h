@@ -5,6 +5,8 @@
 
 namespace puckloop::gap::stats {
 
+/// The values that are finite.
+std::vector<double> finite(const std::vector<double>& values);
 /// Mean of the finite values; NaN when there is none.
 double mean(const std::vector<double>& values);
 /// Sample standard deviation (n - 1); NaN below two values.

@@ -40,12 +40,18 @@ bool varies(const std::vector<double>& values);
 /// By how much each value differs from the one before; left out where either is not known.
 std::vector<double> steps_of(const std::vector<double>& values);
 
+/// Is `one` in the list?
+template <class List, class One>
+bool contains(const List& list, const One& one) {
+    return std::ranges::find(list, one) != std::ranges::end(list);
+}
+
 /// 0 .. count - 1, in the order of `less`; what is alike stays as it is.
 template <class Less>
 std::vector<std::size_t> ordered(std::size_t count, const Less& less) {
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), less);
+    std::ranges::stable_sort(order, less);
     return order;
 }
 

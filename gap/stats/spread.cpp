@@ -126,7 +126,7 @@ Finding evenness_test(const Series& residual, const TestOptions& options) {
         return within > 0 ? (between - all * all / rows) / within : 0.0;
     };
     finding.statistic = statistic(values);
-    const auto [low, high] = std::minmax_element(means.begin(), means.end());
+    const auto [low, high] = std::ranges::minmax_element(means);
     finding.effect = *low > 0 ? *high / *low - 1 : 0.0;
     finding.shape = fmt::format("scatter differs between stretches of runs: {} to {} times the noise",
                                 plain(*low), plain(*high));

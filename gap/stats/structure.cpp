@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kRowsAfterReversal = 5;
 
 bool has_both_signs(const std::vector<double>& values) {
-    return std::any_of(values.begin(), values.end(), [](double v) { return v > 0; }) &&
-           std::any_of(values.begin(), values.end(), [](double v) { return v < 0; });
+    return std::ranges::any_of(values, [](double v) { return v > 0; }) &&
+           std::ranges::any_of(values, [](double v) { return v < 0; });
 }
 
 std::vector<int> as_labels(const std::vector<double>& values) {
@@ -53,7 +53,7 @@ void test_covariate(const StructureInput& input, const Covariate& c, const TestO
 /// without any of what only happens or not).
 Series inside(Series residual, const std::vector<double>& raw) {
     if (raw.empty()) return residual;
-    const auto [low, high] = std::minmax_element(raw.begin(), raw.end());
+    const auto [low, high] = std::ranges::minmax_element(raw);
     for (std::size_t i = 0; i < raw.size(); ++i)
         if (raw[i] == *low || raw[i] == *high) residual.value[i] = std::numeric_limits<double>::quiet_NaN();
     return residual;
@@ -73,7 +73,7 @@ std::vector<Finding> structure_table(const StructureInput& input, const TestOpti
     table.push_back(evenness_test(inside(input.residual, input.raw), options));
     if (varies(input.level)) table.push_back(spread_test(input.residual, input.level, "level", options));
     if (!input.raw.empty()) table.push_back(held_test({input.raw, input.residual.run}, options));
-    adjust_together({&table});
+    adjust_together({&table, 1});
     return table;
 }
 
@@ -88,15 +88,15 @@ std::vector<double> holm(const std::vector<double>& p) {
     return adjusted;
 }
 
-void adjust_together(std::vector<std::vector<Finding>*> tables) {
+void adjust_together(std::span<std::vector<Finding>> tables) {
     std::vector<double> p;
-    for (const auto* table : tables)
-        for (const Finding& f : *table)
+    for (const auto& table : tables)
+        for (const Finding& f : table)
             p.push_back(f.p);
     const std::vector<double> adjusted = holm(p);
     std::size_t next = 0;
-    for (auto* table : tables)
-        for (Finding& f : *table)
+    for (auto& table : tables)
+        for (Finding& f : table)
             f.p_adjusted = adjusted[next++];
 }
 

@@ -4,6 +4,7 @@
 #include "gap/stats/finding.h"
 #include "gap/stats/series.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,6 @@ std::vector<Finding> structure_table(const StructureInput& input, const TestOpti
 std::vector<double> holm(const std::vector<double>& p);
 
 /// Holm over several observables' tables together.
-void adjust_together(std::vector<std::vector<Finding>*> tables);
+void adjust_together(std::span<std::vector<Finding>> tables);
 
 }  // namespace puckloop::gap::stats

@@ -8,8 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace puckloop::gap::stats {
+
+double normal_density(double z, double sd) {
+    return std::exp(-z * z / (2 * sd * sd)) / (sd * std::sqrt(2 * std::numbers::pi));
+}
 
 double normal_tail(double z) {
     return 0.5 * std::erfc(z / std::sqrt(2.0));

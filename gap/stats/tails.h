@@ -3,6 +3,8 @@
 
 namespace puckloop::gap::stats {
 
+/// Density of a normal deviation of this sd.
+double normal_density(double z, double sd = 1.0);
 /// P(Z > z) of the standard normal.
 double normal_tail(double z);
 /// z with P(Z <= z) = p, 0 < p < 1.

@@ -71,7 +71,7 @@ TEST_CASE("boosting finds nothing in noise, white or carried over") {
         }
 }
 
-TEST_CASE("boosting learns a hump and says over what") {
+TEST_CASE("boosting learns a hump and names its covariate") {
     const Made m = made(0.4, 3, hump);
     const Boosted fit = boosted(m.rows, m.components, 1);
     CHECK(won(fit) > 20);

@@ -136,7 +136,7 @@ TEST_CASE("what rounding may do by itself is no cause, what goes beyond it is on
     CHECK(more.causes.at(0).name == "ground_gain");
 }
 
-TEST_CASE("the best of a catalogue meets the criterion by chance as seldom as is said") {
+TEST_CASE("the best of a catalogue meets the criterion by chance as seldom as is claimed") {
     // Held-out scores of one number more where it is nothing: z^2/2 - (z - e)^2/2 with an error e of fitting.
     RandomStream random(2, "criterion");
     constexpr int kCases = 2000, kEffects = 20, kBlocks = 16;

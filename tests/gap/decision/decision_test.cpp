@@ -86,7 +86,7 @@ TEST_CASE("a cause of the catalogue leaves nothing and is named") {
     CHECK(verdict.nearest.empty());
 }
 
-TEST_CASE("what the catalogue does not know is told with its shape and without a name") {
+TEST_CASE("what the catalogue does not know is reported with its shape and without a name") {
     const Verdict verdict = verdict_on(made(5, [](double level, const Place& at) {
         return level + 2 * kNoise * std::sin(8 * std::numbers::pi * at.grey);
     }));

@@ -65,7 +65,7 @@ bool keeps_reflections(std::uint64_t seed, double reflected, double factor) {
     while (candidates[multipath].effect->name != std::string_view("multipath"))
         ++multipath;
     const Fit fit = study.fit_set({multipath}, study.fit_none().fitted.state);
-    const auto share = static_cast<std::size_t>(study.model().find("rab.multipath"));
+    const auto share = *study.model().find("rab.multipath");
     return fit.fitted.state.values[share] > 0 &&
            out_of_role(study, fit, study.hold_out(fit), {}, 1).effects.empty();
 }

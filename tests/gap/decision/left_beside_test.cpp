@@ -54,8 +54,7 @@ TEST_CASE("a strong cause of one observable does not carry a weak one of another
     selection.chosen.effects = {strong, weak};
     selection.chosen.fitted.state = neutral_state(study.model());
     for (const std::size_t effect : selection.chosen.effects) {
-        selection.chosen.fitted.state
-            .values[static_cast<std::size_t>(study.candidates()[effect].freed.front().index)] = 0.1;
+        selection.chosen.fitted.state.values[study.candidates()[effect].freed.front().index] = 0.1;
         Trial step;
         step.effect = effect;
         step.held.sum = effect == strong ? 400 : 12;

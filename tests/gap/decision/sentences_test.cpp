@@ -10,7 +10,7 @@
 using namespace puckloop::gap;
 using Catch::Matchers::Contains;
 
-TEST_CASE("a narrow interval is told with digits enough to see its ends") {
+TEST_CASE("a narrow interval is given with digits enough to see its ends") {
     FittedParameter axle;
     axle.name = "robot.axle_length";
     axle.unit = "m";

@@ -20,9 +20,7 @@ namespace {
 /// Fitted without effects, but taking jumps for pushes of 6 mm.
 State pushed_state(const Study& study) {
     State state = study.fit_none().fitted.state;
-    const auto set = [&](const char* name, double value) {
-        state.values[static_cast<std::size_t>(study.model().find(name))] = value;
-    };
+    const auto set = [&](const char* name, double value) { state.values[*study.model().find(name)] = value; };
     set("push.rate", 0.1);
     set("push.size", 0.006);
     for (auto& noise : state.noise)
@@ -70,11 +68,11 @@ TEST_CASE("how often a robot is pushed is known as well as so few pushes can say
     const Fit fit =
         study.fit_set({static_cast<std::size_t>(effect - all.begin())}, study.fit_none().fitted.state);
     const Precision precision = precision_of(study, fit);
-    const int index = study.model().find("push.rate");
+    const std::size_t index = *study.model().find("push.rate");
     for (std::size_t j = 0; j < fit.freed.size(); ++j) {
         if (fit.freed[j].index != index) continue;
         const Interval interval = interval_of(study, fit, precision, j);
-        const double value = fit.fitted.state.values[static_cast<std::size_t>(index)];
+        const double value = fit.fitted.state.values[index];
         INFO(pushes << " pushes, " << value << " a second, " << interval.low << " to " << interval.high);
         // Of N events the number is known to its root, 90 % to 1.645 of these.
         const double known = (interval.high - interval.low) / 2 / value * std::sqrt(pushes) / 1.645;

@@ -34,7 +34,7 @@ class Exact {
     double misfit(const std::string& observable, const std::map<std::string, double>& parameters) const {
         auto values = model_->neutral();
         for (const auto& [name, value] : parameters)
-            values.at(static_cast<std::size_t>(model_->find(name))) = value;
+            values.at(*model_->find(name)) = value;
         Prediction prediction;
         model_->predict(values, prediction);
         for (std::size_t o = 0; o < prediction.size(); ++o) {

@@ -47,7 +47,7 @@ gap::Experiment drive(double speed) {
 std::vector<double> said(const gap::Experiment& experiment, const char* parameter, double value) {
     const auto model = gap::make_model(experiment);
     auto values = model->neutral();
-    values[static_cast<std::size_t>(model->find(parameter))] = value;
+    values[*model->find(parameter)] = value;
     gap::Prediction prediction;
     model->predict(values, prediction);
     return prediction[0].mean;
@@ -77,7 +77,7 @@ TEST_CASE("a sensor that answers late sees the grey where it was") {
         CHECK(mean[k] == Approx(kBlack + (kWhite - kBlack) * grey_at(x[k])).margin(1e-6));
 }
 
-TEST_CASE("what the grey ahead says changes smoothly with the shift") {
+TEST_CASE("the reading of the grey ahead changes smoothly with the shift") {
     const gap::Experiment experiment = drive(0.05);
     const double step = 1e-6;
     for (double ahead = -0.01; ahead < 0.01; ahead += 0.0013) {

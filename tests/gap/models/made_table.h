@@ -29,7 +29,7 @@ inline Experiment experiment_of(Kind kind, Table columns, std::map<std::string, 
 inline Prediction predicted(const Model& model, const std::map<std::string, double>& changed = {}) {
     std::vector<double> values = model.neutral();
     for (const auto& [name, value] : changed)
-        values.at(static_cast<std::size_t>(model.find(name))) = value;
+        values.at(*model.find(name)) = value;
     Prediction prediction;
     model.predict(values, prediction);
     return prediction;

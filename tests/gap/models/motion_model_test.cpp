@@ -159,8 +159,8 @@ TEST_CASE("a dead band is looked for between the speeds that moved nothing and t
 TEST_CASE("a push is not looked for where a command changed, and a lost command only there") {
     const Exact<MotionKnobs> rest(selftest::motion_rig(), {}, "rest_lapses");
     auto values = rest.model().neutral();
-    values.at(static_cast<std::size_t>(rest.model().find("push.rate"))) = 0.1;
-    values.at(static_cast<std::size_t>(rest.model().find("command.loss"))) = 0.1;
+    values.at(*rest.model().find("push.rate")) = 0.1;
+    values.at(*rest.model().find("command.loss")) = 0.1;
     Prediction prediction;
     rest.model().predict(values, prediction);
     std::size_t pushed = 0, lost = 0;
@@ -175,14 +175,14 @@ TEST_CASE("a push is not looked for where a command changed, and a lost command 
     CHECK(lost < rows / 5);
 }
 
-TEST_CASE("friction is told as the simulator's own number or as what the model moves") {
+TEST_CASE("friction is given as the simulator's own number or as what the model moves") {
     const auto friction = [](const std::map<std::string, double>& nominal) {
         const tests::Table table{
             {"t_s", {0, 0.1, 0.2, 0.3}}, {"x_m", {0, 0, 0, 0.01}},         {"y_m", {0, 0, 0, 0}},
             {"theta_rad", {0, 0, 0, 0}}, {"cmd_left", {0, 500, 500, 500}}, {"cmd_right", {0, 500, 500, 500}}};
         const Experiment experiment = tests::experiment_of(Kind::Motion, table, nominal);
         const auto model = make_model(experiment);
-        return model->neutral()[static_cast<std::size_t>(model->find("inverse_friction"))];
+        return model->neutral()[*model->find("inverse_friction")];
     };
     CHECK(friction({}) == Approx(1 / 0.7));
     CHECK(friction({{"contact.mu", 0.35}}) == Approx(1 / 0.35));

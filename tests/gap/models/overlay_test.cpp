@@ -1,4 +1,4 @@
-// What a verdict's overlay says, and that every effect enters the simulator where its file says.
+// What a verdict's overlay says, and that every effect enters the simulator where its file puts it.
 
 #include "gap/effects/effect.h"
 #include "gap/overlay/overlay_names.h"
@@ -71,7 +71,7 @@ bool takes_any(const Effect& effect) {
 
 }  // namespace
 
-TEST_CASE("every effect enters the simulator where its file says") {
+TEST_CASE("every effect enters the simulator where its file puts it") {
     for (const Effect& effect : catalogue()) {
         INFO(effect.name << ": " << effect.enters);
         const std::string where = effect.enters;
@@ -88,7 +88,7 @@ TEST_CASE("every effect enters the simulator where its file says") {
     }
 }
 
-TEST_CASE("an overlay takes the parameters that are said to be taken, and no others") {
+TEST_CASE("an overlay takes the parameters that it claims to take, and no others") {
     for (const Effect& effect : catalogue()) {
         INFO(effect.name);
         bool all = true;
@@ -98,7 +98,7 @@ TEST_CASE("an overlay takes the parameters that are said to be taken, and no oth
     }
 }
 
-TEST_CASE("an overlay can be loaded whatever the experiment is called and the fit says") {
+TEST_CASE("an overlay can be loaded whatever the experiment is called and the fit gives") {
     Experiment experiment;
     experiment.kind = Kind::Ground;
     experiment.title = "floor\n\"ground.white\" = 1\n[parameters]\x1b[31m\ttab";
@@ -174,7 +174,7 @@ TEST_CASE("sensors that no foreign pulse reached are sheltered in a run, too") {
     CHECK(loaded(experiment, {}).proximity.interference_share[0] == 1);
 }
 
-TEST_CASE("a drift over a series leaves a run in its middle where the fit says") {
+TEST_CASE("a drift over a series leaves a run in its middle where the fit does") {
     Experiment experiment;
     experiment.kind = Kind::Proximity;
     for (const double order : {3.0, 5.0, 11.0}) {

@@ -126,7 +126,7 @@ TEST_CASE("strength: gains add, a floor lifts, a rail cuts what is shown, spread
 TEST_CASE("a rail is looked for only where strengths pile up, and then cuts there") {
     Table rows = table();
     const Experiment plain = experiment_of(Kind::Rab, rows);
-    CHECK(make_model(plain)->find("rab.saturation") == -1);
+    CHECK(!make_model(plain)->find("rab.saturation"));
     for (std::size_t i = 12; i < 18; ++i)
         rows["strength"][i] = 1234.5;
     const Experiment cut = experiment_of(Kind::Rab, rows);

@@ -113,7 +113,7 @@ TEST_CASE("an age in the world is the forward model's at a steady approach") {
     }
 }
 
-TEST_CASE("the ground row in the world tilts and warms up as the forward model says") {
+TEST_CASE("the ground row in the world tilts and warms up as in the forward model") {
     physics::World world = worlds::world_with_robot(3, 3);
     world.parameters = {{"ground.noise", 0}, {"ground.white", 700}};
     const Changes changes{
@@ -146,7 +146,7 @@ TEST_CASE("the ground row in the world tilts and warms up as the forward model s
     CHECK(most > 50);
 }
 
-TEST_CASE("the accelerometer in the world does with every parameter what the forward model says") {
+TEST_CASE("the accelerometer in the world follows the forward model in every parameter") {
     physics::World world = worlds::world_with_robot(3, 3);
     world.parameters = {{"world.slope_x", 0.03}, {"world.slope_y", 0.02}};
     const worlds::Drive drive{300, 300, 2.0};

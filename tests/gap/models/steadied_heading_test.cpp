@@ -1,5 +1,5 @@
 #include "base/random.h"
-#include "gap/models/steadied_heading.h"
+#include "gap/models/motion_path.h"
 
 #include <catch2/catch.hpp>
 

@@ -23,7 +23,7 @@ Exact<TimingKnobs> exact(const TimingKnobs& knobs, const char* name) {
 
 }  // namespace
 
-TEST_CASE("with nothing wrong frames come when the model says") {
+TEST_CASE("with nothing wrong frames come when the model has them") {
     const auto rest = exact({}, "timing_rest");
     CHECK(rest.misfit("robot_clock", {}) < kRounding);
     CHECK(rest.misfit("arrival", {}) < kRounding);
@@ -133,8 +133,8 @@ TEST_CASE("a program that gives answers up breaks those frames that wait longest
     const auto wrong = [&](double limit) {
         Prediction prediction;
         auto values = model->neutral();
-        values.at(static_cast<std::size_t>(model->find("timing.batch"))) = kBatch;
-        values.at(static_cast<std::size_t>(model->find("timing.answer_limit"))) = limit;
+        values.at(*model->find("timing.batch")) = kBatch;
+        values.at(*model->find("timing.answer_limit")) = limit;
         model->predict(values, prediction);
         int count = 0;
         for (std::size_t i = 0; i < whole.size(); ++i)

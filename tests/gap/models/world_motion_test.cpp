@@ -99,7 +99,7 @@ constexpr double kMoreWay = 5e-4, kMoreAside = 1e-4, kMoreTurn = 6e-3;
 
 }  // namespace
 
-TEST_CASE("with nothing changed the world goes where the motion model says") {
+TEST_CASE("with nothing changed the world goes where the motion model does") {
     const Misfit m = misfit(driven({}, {}), {});
     CAPTURE(m.along, m.across, m.heading);
     CHECK(m.along < kWay);

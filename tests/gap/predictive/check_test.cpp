@@ -43,9 +43,7 @@ Experiment floors(std::uint64_t seed, const Wrong& wrong) {
         experiment.runs.push_back(std::move(run));
     }
     const auto model = make_model(experiment);
-    const auto of = [&](const char* name) {
-        return model->neutral()[static_cast<std::size_t>(model->find(name))];
-    };
+    const auto of = [&](const char* name) { return model->neutral()[*model->find(name)]; };
     for (Run& run : experiment.runs)
         for (std::size_t k = 0; k < run.rows; ++k)
             run.columns["reading"][k] = std::round(

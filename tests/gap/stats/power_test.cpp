@@ -17,7 +17,7 @@ namespace {
 const TestOptions kOptions{.seed = 7, .permutations = 999};
 }
 
-TEST_CASE("a slope under carried-over noise: found, sized, told in words") {
+TEST_CASE("a slope under carried-over noise: found, sized, put in words") {
     RandomStream random(1, "slope");
     Series y = made_noise(6, 100, 0.6, random);
     std::vector<double> distance;
@@ -87,7 +87,7 @@ TEST_CASE("a threshold is found where it is") {
     CHECK(std::stod(f.shape.substr(f.shape.rfind(' '))) == Approx(800).margin(25));
 }
 
-TEST_CASE("the sign of a command and its reversals are told apart") {
+TEST_CASE("the sign of a command and its reversals are kept apart") {
     RandomStream random(5, "reversal");
     Series y = made_noise(6, 120, 0.0, random);
     std::vector<double> command;
