@@ -34,7 +34,7 @@ constexpr double kShortestBatch = 0.001;  // s
 constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
 constexpr double kWhole = 0.999;
 constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
-constexpr double kLeastFading = 1e-9;              // of what is known of a frame, to the next
+constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
 
 struct Numbers {
     double extra_period = 0.0, period_jitter = 0.0, clock_drift = 0.0, i2c_stretch = 0.0, batch = 0.0,
