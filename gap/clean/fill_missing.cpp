@@ -2,7 +2,7 @@
 
 #include "gap/data/cells.h"
 #include "gap/data/columns.h"
-#include "gap/validate/checks.h"
+#include "gap/data/refuse.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,8 @@
 // Is this data what it says it is? Looked at before anything is fitted: what cannot be used throws
 // InputError, what can be used with care becomes a caution.
 
-#include "base/error.h"
 #include "gap/data/experiment.h"
-
-#include <fmt/format.h>
+#include "gap/data/refuse.h"
 
 #include <array>
 #include <cstddef>
@@ -18,19 +16,6 @@ namespace puckloop::gap {
 /// All checks. May drop rows that no analysis can use (all truth missing), with a caution.
 /// Where `problems` are gathered, every check is made; those that need sound columns only where all are.
 void check(Experiment& experiment, Problems* problems = nullptr);
-
-/// Throws InputError, which names the run's file and, where `row` (from 0) is told, the row.
-[[noreturn]] inline void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
-                                const std::string& expected, long row = -1) {
-    throw InputError((experiment.folder / run.file).string(),
-                     row < 0 ? std::string() : fmt::format("row {}", row + 1), problem, expected);
-}
-
-/// Of the experiment as a whole: its experiment.toml.
-[[noreturn]] inline void refuse(const Experiment& experiment, const std::string& problem,
-                                const std::string& expected) {
-    throw InputError((experiment.folder / "experiment.toml").string(), "", problem, expected);
-}
 
 /// A column of all runs, one behind the other; NaN in the rows of runs without it.
 std::vector<double> pooled(const Experiment& experiment, std::string_view column);
