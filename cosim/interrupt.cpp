@@ -1,7 +1,10 @@
 #include "cosim/interrupt.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <cstddef>
+#include <string_view>
 
 namespace puckloop::cosim {
 
@@ -10,10 +13,18 @@ namespace {
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t caught = 0;
 volatile std::sig_atomic_t caught_again = 0;
+volatile std::sig_atomic_t on_terminal = 0;
+
+/// A run may wait long for its end: for a program that winds up, or for a debugger that has not come.
+void show_what_ends_it() {
+    constexpr std::string_view kHint = "\npuckloop: ending; Ctrl-C again ends at once\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kHint.data(), kHint.size());
+}
 
 extern "C" void puckloop_note_signal(int signal) {
     if (caught == 0) {
         caught = signal;
+        if (signal == SIGINT && on_terminal != 0) show_what_ends_it();
         return;
     }
     caught_again = signal;
@@ -26,6 +37,7 @@ extern "C" void puckloop_note_signal(int signal) {
 InterruptGuard::InterruptGuard() {
     caught = 0;
     caught_again = 0;
+    on_terminal = ::isatty(STDERR_FILENO);
     struct sigaction action {};
     action.sa_handler = puckloop_note_signal;
     sigemptyset(&action.sa_mask);
