@@ -43,6 +43,8 @@ TEST_CASE("snapshots of another run, and options that contradict them, are refus
             {"1 s is not after the snapshot that the run goes on from, 1.2 s"});
     refused({"--fault", "hang node=robot0.pic begin=\"1 s\""},
             {"run.snap", "fault robot0.pic.hang", "begins at 1 s, before the snapshot", "1.2 s\" or later"});
+    refused({"--fault", "drop link=robot0.uart begin=\"1 s\" count=1"},
+            {"robot0.uart", "would have changed what arrived at", "before the snapshot"});
     const std::string text = text_of(scenario);
     const auto change = [&](const std::string& what, const std::string& with, const Words& said) {
         std::string other = text;
