@@ -9,6 +9,7 @@
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/stats/robust.h"
+#include "gap/sync/pauses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -222,33 +223,27 @@ class TimingModel final : public ModelOf<Numbers> {
         }
     }
 
-    /// A frame by its number, and when it was due.
+    /// A frame by its number, when it was due, what it takes on the wire and the transfers before it.
     struct Frame {
-        double number, due;
+        double number, due, wire, reads;
     };
-
-    static Frame frame_at(const Run& run, std::uint32_t row) {
-        const auto &seq = run.column("seq"), &nominal = run.column("nominal_period");
-        const double number = seq.empty() || std::isnan(seq[row]) ? row : seq[row];
-        return {number, number * (nominal.empty() || std::isnan(nominal[row]) ? kPeriod : nominal[row])};
-    }
 
     void gather_counts(const Experiment& experiment, const Observable& host) {
         for (std::size_t i = 0; i < host.y.size(); ++i) {
-            const Frame frame = frame_at(experiment.runs[host.run[i]], host.row[i]);
-            periods_.push_back(frame.due);
-            count_.push_back(frame.number);
+            const auto [number, period] = frame_count(experiment.runs[host.run[i]], host.row[i]);
+            periods_.push_back(number * period);
+            count_.push_back(number);
         }
     }
 
     /// All frames, whether they arrived or not, for when each is ready.
     void gather_frames(const Experiment& experiment, const Rows& rows, const Observable& whole,
                        const std::vector<std::uint32_t>& used) {
-        std::vector<double> bytes, baud;
-        rows.take(used, {{bytes, "bytes"}, {baud, "baud", kBaud}, {frame_reads_, "i2c_reads"}});
+        std::vector<double> bytes, baud, reads;
+        rows.take(used, {{bytes, "bytes"}, {baud, "baud", kBaud}, {reads, "i2c_reads"}});
         for (std::size_t i = 0; i < whole.y.size(); ++i) {
-            frames_.push_back(frame_at(experiment.runs[whole.run[i]], whole.row[i]));
-            frames_.back().due += bytes[i] * kBits / baud[i];
+            const auto [number, period] = frame_count(experiment.runs[whole.run[i]], whole.row[i]);
+            frames_.push_back({number, number * period, bytes[i] * kBits / baud[i], reads[i]});
         }
     }
 
@@ -327,15 +322,23 @@ class TimingModel final : public ModelOf<Numbers> {
         p.extra.assign(now.period_jitter > 0 ? p.mean.size() : 0, now.period_jitter);
     }
 
+    /// When a frame that is due by `clock` has come over the wire, up to the chain's zero.
+    double ready_at(const Numbers& now, double clock, double number, double wire, double reads) const {
+        const double longer = clocks_ ? 0.0 : now.extra_period, slower = 1 / (1 + now.baud_error);
+        return clock * (1 + now.clock_drift) + longer * number + wire * slower + now.i2c_stretch * reads;
+    }
+
+    std::vector<double> arrivals_ready(const Numbers& now) const {
+        std::vector<double> ready(arrivals().y.size());
+        for (std::size_t i = 0; i < ready.size(); ++i)
+            ready[i] = ready_at(now, robot_[i], count_[i], wire_[i], reads_[i]);
+        return ready;
+    }
+
     void predict_arrival(const Numbers& now, Predicted& p) const {
         const Observable& o = arrivals();
-        const double drift = now.clock_drift, stretch = now.i2c_stretch, batch = now.batch,
-                     longer = clocks_ ? 0.0 : now.extra_period;
-        const double slower = 1 / (1 + now.baud_error);
-        std::vector<double> arrival(o.y.size());
-        for (std::size_t i = 0; i < arrival.size(); ++i)
-            arrival[i] =
-                robot_[i] * (1 + drift) + longer * count_[i] + wire_[i] * slower + stretch * reads_[i];
+        const double batch = now.batch;
+        const std::vector<double> arrival = arrivals_ready(now);
         p.mean.resize(o.y.size());
         p.extra.assign(batch >= shortest_ && is_fine_batch(batch) ? o.y.size() : 0, 0.0);
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
@@ -363,12 +366,7 @@ class TimingModel final : public ModelOf<Numbers> {
         const Observable &whole = observables_[static_cast<std::size_t>(ok_)], &o = arrivals();
         std::vector<double> chance(whole.y.size(), 1.0);
         if (!(now.answer_limit > 0) || now.batch < shortest_ || is_fine_batch(now.batch)) return chance;
-        const auto ready_by = [&](double due, double number, double reads) {
-            return due + now.extra_period * number + now.i2c_stretch * reads;
-        };
-        std::vector<double> ready;
-        for (std::size_t i = 0; i < o.y.size(); ++i)
-            ready.push_back(ready_by(robot_[i] + wire_[i], count_[i], reads_[i]));
+        const std::vector<double> ready = arrivals_ready(now);
         std::size_t frame = 0;
         for (const auto& [from, to] : stretches_of(o, o.y.size())) {
             const BatchGrid grid = grid_of(o, from, to, now.batch, ready);
@@ -379,9 +377,8 @@ class TimingModel final : public ModelOf<Numbers> {
             };
             for (; frame < chance.size() && before_next(frame); ++frame) {
                 const Frame& one = frames_[frame];
-                const double late =
-                    grid.wait(ready_by(one.due, one.number, frame_reads_[frame])) - now.answer_limit;
-                chance[frame] = 1 / (1 + std::exp(late / kEdge));
+                const double wait = grid.wait(ready_at(now, one.due, one.number, one.wire, one.reads));
+                chance[frame] = 1 / (1 + std::exp((wait - now.answer_limit) / kEdge));
             }
         }
         return chance;
@@ -420,7 +417,6 @@ class TimingModel final : public ModelOf<Numbers> {
     int ok_ = -1, shift_ = -1;
     std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
     std::vector<Frame> frames_;  // whole or not; empty where the robot's clock says when each was ready
-    std::vector<double> frame_reads_;
 };
 
 }  // namespace

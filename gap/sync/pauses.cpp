@@ -14,23 +14,27 @@ constexpr double kPeriod = 0.1;  // s, where none is stated
 
 }  // namespace
 
+FrameCount frame_count(const Run& run, std::size_t row) {
+    const auto &seq = run.column("seq"), &nominal = run.column("nominal_period");
+    return {seq.empty() || std::isnan(seq[row]) ? static_cast<double>(row) : seq[row],
+            nominal.empty() || std::isnan(nominal[row]) ? kPeriod : nominal[row]};
+}
+
 void find_pauses(Experiment& experiment) {
     if (experiment.kind != Kind::Timing || experiment.has("t_robot_s")) return;
     std::size_t pauses = 0, runs = 0;
     double shortest = std::numeric_limits<double>::infinity(), longest = 0.0;
     for (Run& run : experiment.runs) {
-        const auto &host = run.column("t_host_s"), &seq = run.column("seq"),
-                   &nominal = run.column("nominal_period");
+        const auto& host = run.column("t_host_s");
         if (host.empty()) continue;
-        const auto number = [&](std::size_t row) {
-            return seq.empty() || std::isnan(seq[row]) ? static_cast<double>(row) : seq[row];
-        };
         std::size_t last = run.rows;
         for (std::size_t row = 0; row < run.rows; ++row) {
             if (std::isnan(host[row])) continue;
-            if (last < run.rows && number(row) > number(last) + 1) {
-                const double late = host[row] - host[last] - (number(row) - number(last)) * nominal[row];
-                if (late > kPause * nominal[row]) {
+            const auto [number, period] = frame_count(run, row);
+            if (last < run.rows) {
+                const double passed = number - frame_count(run, last).number,
+                             late = host[row] - host[last] - passed * period;
+                if (passed > 1 && late > kPause * period) {
                     run.begun_anew.push_back(row);
                     shortest = std::min(shortest, late);
                     longest = std::max(longest, late);

@@ -4,7 +4,16 @@
 
 #include "gap/data/experiment.h"
 
+#include <cstddef>
+
 namespace puckloop::gap {
+
+/// A frame's number (the row's where none is given) and the period that it counts by, s (0.1 where none is
+/// stated).
+struct FrameCount {
+    double number, period;
+};
+FrameCount frame_count(const Run& run, std::size_t row);
 
 /// Of timing without the robot's own clock: sets Run::begun_anew to the rows that come later than the frames
 /// broken or missing before them account for, by half a period or more, and says so as a caution.
