@@ -45,7 +45,7 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
             by_run = std::max(by_run, one.gain);
     if (by_run > 0 && too_much(by_run)) return "explains scatter that differs from run to run in its mean";
     const auto forms = free_forms_of(study.experiment(), study.model(), calm.fitted.state, seed, touched);
-    const bool bursts = std::ranges::any_of(forms, [](const FreeForm& form) { return form.spells; });
+    const bool bursts = std::ranges::any_of(forms, [](const FreeForm& form) { return form.bursts; });
     if (bursts && lapses(study, fit)) return "explains scatter that comes in bursts";
     const double shaped = gained_by_shape(forms);
     if (shaped > 0 && too_much(shaped)) return "explains scatter that has a shape";

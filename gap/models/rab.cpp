@@ -334,7 +334,7 @@ class RabModel final : public ModelOf<Numbers> {
                              std::exp(-2 * collisions * std::max(senders_[i] - 1, 0.0) * frame_[i] /
                                       std::max(period_[i], 1e-4));
             if (fetch > 0) arrives *= std::min(1.0, 1 / std::max(rate_[i] * fetch, 1e-6));
-            if (beat > 0) {  // lost spells: what happened before bears on now
+            if (beat > 0) {  // losses in bursts: what happened before bears on now
                 double lost = beat;
                 if (o.starts[i] == 0 && !o.time.empty()) {
                     const double forget = std::exp(-(o.time[i] - o.time[i - 1]) / burst);

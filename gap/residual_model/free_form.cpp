@@ -226,7 +226,7 @@ FreeForm form_of(const Errors& errors, const std::vector<stats::Component>& comp
 
 /// Do wild values (not 0) keep together within their chains, more than rare chances that know nothing of each
 /// other? Of k among n in a chain, k (k - 1) / n neighbours are expected.
-bool in_spells(const stats::ErrorRows& rows) {
+bool in_bursts(const stats::ErrorRows& rows) {
     double seen = 0.0, expected = 0.0, n = 0.0, k = 0.0;
     bool last = false;
     for (std::size_t i = 0; i < rows.error.size(); ++i) {
@@ -268,7 +268,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
         error = last = wild;
     }
     if (rows < kLeastWild) return form;
-    const bool spells = in_spells(errors.rows);
+    const bool bursts = in_bursts(errors.rows);
     const double sd = std::sqrt(rows / static_cast<double>(known.size()));
     for (double& error : errors.rows.error)
         error /= sd;
@@ -281,7 +281,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     errors.rows.trimmed = false;
     form = form_of(errors, components, seed, false);
     form.wild = true;
-    form.spells = spells;
+    form.bursts = bursts;
     const bool one_sided = std::pow(0.5, low + high - 1) < thresholds::kSure && std::min(low, high) == 0;
     if (!form.clear && (one_sided || far >= kLeastWild)) {
         form.clear = true;

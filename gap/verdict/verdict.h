@@ -107,7 +107,7 @@ struct FreeForm {
     double size = 0.0;    ///< root mean square of the correction, in units of the noise
     bool clear = false;   ///< chance does not make it
     bool wild = false;    ///< of where readings go far astray; not added to the gain of the same rows
-    bool spells = false;  ///< of these: they come together
+    bool bursts = false;  ///< of these: they come together
     std::string shape;    ///< in words
     std::vector<FreeFormTerm> terms;  ///< the largest first
 };
