@@ -88,7 +88,7 @@ void check_output(const std::string& vcd, const std::filesystem::path& record) {
     std::error_code error;
     if (vcd != "-" && std::filesystem::equivalent(record, vcd, error))
         throw InputError(vcd, "--vcd", "is the record itself", "another file");
-    if (!vcd.empty()) check_writable(vcd);
+    if (!vcd.empty()) check_output_file(vcd);
 }
 
 int run(Options& options) {

@@ -44,7 +44,7 @@ void run(const Options& options) {
                          "trace.csv of a run or its results folder, or one of export, decode and rab");
     const RecordedTrace trace(options.file, options.selection);
     for (const std::string& output : {options.csv, options.vcd})
-        if (!output.empty()) check_writable(output);
+        if (!output.empty()) check_output_file(output);
     if (!options.csv.empty()) write_output(options.csv, [&](std::ostream& out) { export_csv(trace, out); });
     if (!options.vcd.empty()) write_output(options.vcd, [&](std::ostream& out) { export_vcd(trace, out); });
     if (!options.csv.empty() || !options.vcd.empty()) return;

@@ -42,7 +42,7 @@ void run(const Options& options) {
     std::error_code error;
     if (options.output != "-" && std::filesystem::equivalent(trace.file(), options.output, error))
         throw InputError(options.output, "--output", "is the trace itself", "another file");
-    check_writable(options.output);
+    check_output_file(options.output);
     if (format == "sr") return export_sr(trace, options.output, static_cast<std::uint64_t>(options.rate));
     const auto write = format == "csv" ? export_csv : format == "vcd" ? export_vcd : export_pcapng;
     // What cannot be read is reported before a file is made of it.

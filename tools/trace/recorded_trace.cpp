@@ -110,7 +110,7 @@ void RecordedTrace::for_each_checked(const std::function<void(const cosim::Trace
         std::fprintf(stderr, "puckloop: %s: the last line is incomplete and left out\n", file_.c_str());
 }
 
-void check_writable(const std::string& path) {
+void check_output_file(const std::string& path) {
     if (path == "-") return;
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const bool there = ::access(path.c_str(), F_OK) == 0;

@@ -69,7 +69,7 @@ class RecordedTrace {
 };
 
 /// Throws InputError if no file can be written at `path` ("-" always can): known before the work is done.
-void check_writable(const std::string& path);
+void check_output_file(const std::string& path);
 
 /// Calls `write` with the open file, "-" being the standard output. Throws RunError when it cannot be
 /// written.
