@@ -5,8 +5,6 @@
 #include "gap/stats/series.h"
 #include "gap/stats/tails.h"
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -69,7 +67,7 @@ std::vector<Row> rows_of(const Predicted& predicted, const NoiseParameters& nois
                          const Innovations& innovations, const std::vector<std::uint32_t>& blocks) {
     std::vector<Row> rows;
     if (!innovations.mixed.empty()) return rows;
-    const boost::math::students_t t(std::exp(noise.log_tail));
+    const stats::StudentLaw usual(std::exp(noise.log_tail));
     for (std::size_t i = 0; i < innovations.z.size(); ++i) {
         if (innovations.role[i] != RowRole::Plain) continue;
         const double z = innovations.z[i];
@@ -81,7 +79,7 @@ std::vector<Row> rows_of(const Predicted& predicted, const NoiseParameters& nois
             row.lapse = predicted.lapse[i];
             row.outside = predicted.lapse_both ? (up + normal_density(z + shift, width)) / 2 : up;
         }
-        row.log_before = std::log(row.density(boost::math::pdf(t, z)));
+        row.log_before = std::log(row.density(usual.density(z)));
         rows.push_back(row);
     }
     return rows;

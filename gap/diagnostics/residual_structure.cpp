@@ -185,6 +185,7 @@ std::vector<stats::Finding> residual_structure(const Experiment& experiment, con
     stats::StructureInput input;
     input.residual.value = residual_of(series, stage);
     input.residual.run.assign(series.run.begin(), series.run.end());
+    input.residual.events = series.events;
     input.time = times_of(experiment, series);
     input.level = simulated(series, stage);
     // Of a reading at an end of the instrument only the middle of what it may be is known: it scatters less.

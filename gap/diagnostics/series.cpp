@@ -4,9 +4,28 @@
 #include "gap/models/model.h"
 #include "gap/stats/series.h"
 
+#include <cmath>
 #include <utility>
 
 namespace puckloop::gap {
+
+namespace {
+
+/// Happened or not, less its probability, in one unit for all rows: what a change of the odds moves (the
+/// score of a logistic regression). Over the row's own deviation one event where none is likely would say
+/// more than all others.
+void weigh_alike(Series& events) {
+    double squares = 0.0;
+    for (const double sd : events.scale)
+        squares += sd * sd / static_cast<double>(events.scale.size());
+    if (!(squares > 0)) return;
+    for (std::size_t i = 0; i < events.scale.size(); ++i) {
+        events.innovation_before[i] = (events.measured[i] - events.before[i]) / std::sqrt(squares);
+        events.innovation_after[i] = (events.measured[i] - events.after[i]) / std::sqrt(squares);
+    }
+}
+
+}  // namespace
 
 std::vector<Series> series_of(const Model& model, const State& before, const State& after) {
     const Prediction old_prediction = model.predicted(before.values),
@@ -24,6 +43,7 @@ std::vector<Series> series_of(const Model& model, const State& before, const Sta
         Series one;
         one.observable = observable.name;
         one.unit = observable.unit;
+        one.events = observable.noise == NoiseKind::Event;
         for (const std::size_t i : order) {
             one.run.push_back(observable.run[i]);
             one.row.push_back(observable.row[i]);
@@ -34,6 +54,7 @@ std::vector<Series> series_of(const Model& model, const State& before, const Sta
             one.innovation_before.push_back(old_costs[o].innovation[i]);
             one.innovation_after.push_back(new_costs[o].innovation[i]);
         }
+        if (one.events) weigh_alike(one);
         all.push_back(std::move(one));
     }
     return all;

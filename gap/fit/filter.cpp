@@ -1,6 +1,7 @@
 #include "gap/fit/filter.h"
 
 #include "gap/fit/walk.h"
+#include "gap/stats/tails.h"
 
 #include <Eigen/Core>
 
@@ -68,6 +69,11 @@ double hazard(double z) {
 struct Known {
     double mean = 0.0, variance = 0.0;
 
+    /// With a reading that is `off` the mean, and has an error of the variance `other` besides.
+    Known after(double off, double other) const {
+        const double taken = variance > 0 ? variance / (variance + other) : 0.0;
+        return {mean + taken * off, variance * (1 - taken)};
+    }
     /// Learns that the error lies beyond a limit, `z` deviations above the mean (`low`: below it).
     void cut(double z, bool low) {
         const double side = low ? -z : z, steep = hazard(side), sd = std::sqrt(variance);
@@ -75,6 +81,38 @@ struct Known {
         variance *= std::clamp(1 + side * steep - steep * steep, 0.0, 1.0);
     }
 };
+
+/// What is known of a row's error where the row may be a lapse, which is none of the noise's and tells the
+/// next row nothing: mean and variance over "a lapse" and "none" (Harrison and Stevens, J. R. Stat. Soc. B
+/// 38, 1976). `ahead` is what was known before the row, which is `off` that; a lapse is normal about its
+/// shift.
+Known beside_lapse(const Predicted& p, std::size_t i, double off, double sd, const stats::StudentLaw& law,
+                   const Known& ahead) {
+    const double root = std::sqrt(ahead.variance);
+    const double width = p.lapse_scale[i] / sd, shift = p.lapse_shift / sd, spread = std::hypot(width, root);
+    struct Case {
+        double weight;
+        Known then;
+    };
+    std::array<Case, 3> cases{{{(1 - p.lapse[i]) * law.density(off / root) / root, ahead.after(off, 0.0)}}};
+    for (const std::size_t k : {1, 2}) {
+        if (k == 2 && !p.lapse_both) continue;
+        const double rest = k == 1 ? off - shift : off + shift;
+        cases[k] = {p.lapse[i] * stats::normal_density(rest, spread) / (p.lapse_both ? 2 : 1),
+                    ahead.after(rest, width * width)};
+    }
+    double all = 0.0;
+    Known left;
+    for (const Case& one : cases) {
+        all += one.weight;
+        left.mean += one.weight * one.then.mean;
+    }
+    if (!(all > 0)) return ahead.after(off, 0.0);
+    left.mean /= all;
+    for (const auto& [weight, then] : cases)
+        left.variance += weight / all * (then.variance + std::pow(then.mean - left.mean, 2));
+    return left;
+}
 
 /// Is the row at an end of what the instrument shows? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
@@ -159,10 +197,10 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
     const RowSize size(o, p, noise);
     const bool has_line = p.line_amplitude > 0.0 && !o.time.empty();
     const double omega = 2 * std::numbers::pi * p.line_frequency;
+    const stats::StudentLaw law(std::exp(noise.log_tail));
     Line line;
     bool carried = false;
     Known last;
-    const double rest = 1 - noise.carry * noise.carry, root = std::sqrt(rest);
     std::array<double, 2> last_h{};
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double sd = size.at(i);
@@ -170,38 +208,32 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
             carried = false;
             line = Line{};
         }
-        const bool far = carried && !o.steps.empty() && o.steps[i] > 1;  // over rows that are missing
-        const double kept = !carried ? 0.0 : far ? std::pow(noise.carry, o.steps[i]) : noise.carry;
+        const double rows = o.steps.empty() ? 1.0 : o.steps[i];  // more than one over rows that are missing
+        const double kept = !carried ? 0.0 : rows > 1 ? std::pow(noise.carry, rows) : noise.carry;
+        Known ahead{kept * last.mean, 1 - kept * kept + kept * kept * last.variance};
         if (clipped(o, p, i, sd, out)) {
             carried = !has_line;
             if (has_line) continue;
-            last = {kept * last.mean, kept * kept * last.variance + 1 - kept * kept};
-            out.z[i] = (out.z[i] - last.mean) / std::sqrt(last.variance);
-            last.cut(out.z[i], out.role[i] == RowRole::Low);
+            out.z[i] = (out.z[i] - ahead.mean) / std::sqrt(ahead.variance);
+            ahead.cut(out.z[i], out.role[i] == RowRole::Low);
+            last = ahead;
             continue;
         }
         const double error = (o.y[i] - p.mean[i]) / sd;
-        double innovation = error - kept * last.mean, variance = far ? 1 - kept * kept * (1 - last.variance)
-                                                                 : carried
-                                                                     ? rest + kept * kept * last.variance
-                                                                     : 1.0;
-        const double deviation = last.variance == 0.0 && !far ? root : std::sqrt(variance);
-        last = {error, 0.0};
-        if (!has_line) {
-            out.z[i] = carried ? innovation / deviation : innovation;
-            out.variance[i] = variance * sd * sd;
-            carried = true;
-            continue;
+        double innovation = error - ahead.mean, variance = ahead.variance;
+        if (has_line) {
+            const double reach = p.line_amplitude * of_row(o.gate, i, 1.0) / sd;
+            const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
+                                            reach * std::sin(omega * o.time[i])};
+            const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
+            last_h = own;
+            line.filter(h, innovation, variance);
+            ahead = {error - innovation, variance};
         }
-        const double reach = p.line_amplitude * of_row(o.gate, i, 1.0) / sd;
-        const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
-                                        reach * std::sin(omega * o.time[i])};
-        const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
-        last_h = own;
-        line.filter(h, innovation, variance);
-        carried = true;
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
+        last = of_row(p.lapse, i) > 0.0 ? beside_lapse(p, i, innovation, sd, law, ahead) : Known{error, 0.0};
+        carried = true;
     }
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 // Innovations: what each row says that the rows before it did not.
 //
-// Deviations: 1. what a clipped row tells the next is taken for normal, with its mean and variance; beside a
-// line or in a sum a row after a clipped one counts as the first of a chain. 2. Where a sum may be pushed, a
-// few likely histories stand for all.
+// Deviations: 1. what a clipped row tells the next is taken for normal, with its mean and variance, and so is
+// what a row tells the next that may be a lapse; beside a line or in a sum a row after a clipped one counts
+// as the first of a chain. 2. Where a sum may be pushed, a few likely histories stand for all.
 
 #include "gap/fit/noise.h"
 

@@ -14,6 +14,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kLeastTail = 1e-15;
 constexpr double kSmall = 1e-4;  // below, the series of ln(1 + q) is exact to rounding
 
 double square(double value) {
@@ -23,10 +24,6 @@ double square(double value) {
 /// ln(1 + q), q >= 0; std::log1p takes twice as long.
 double log_above(double q) {
     return q < kSmall ? q * (1 - q * (0.5 - q / 3)) : std::log(1 + q);
-}
-
-double t_constant(double nu) {
-    return std::lgamma((nu + 1) / 2) - std::lgamma(nu / 2) - 0.5 * std::log(nu * kPi);
 }
 
 double clip_likelihood(RowRole role, double z) {
@@ -53,6 +50,18 @@ double lapse_cost(const Predicted& p, std::size_t i, double z, double sd, double
     const double hit = p.lapse_both ? (up + std::exp(-square(z + shift) / spread)) / 2 : up;
     const double here = (1 - lapse) * std::exp(-tail / 2) + wide * hit;
     return std::max(std::log(peak / here), 0.0) + std::max(-std::log(peak), 0.0);
+}
+
+/// Innovation of a row that may be a lapse, as far out in the noise's own law as it is in the mixture's (a
+/// quantile residual: Dunn and Smyth, J. Comput. Graph. Stat. 5, 1996).
+double quantile_residual(const Predicted& p, std::size_t i, double z, double sd,
+                         const stats::StudentLaw& law) {
+    const double lapse = p.lapse[i], shift = p.lapse_shift / sd;
+    const double spread = std::hypot(p.lapse_scale[i] / sd, 1.0), side = z < 0 ? -1.0 : 1.0;
+    const double here = stats::normal_tail((side * z - side * shift) / spread),
+                 other = p.lapse_both ? stats::normal_tail((side * z + side * shift) / spread) : here;
+    const double beyond = (1 - lapse) * law.tail(side * z) + lapse * (here + other) / 2;
+    return side * law.beyond(std::clamp(beyond, kLeastTail, 1 - kLeastTail));
 }
 
 /// Readings inside a dead zone should not be there.
@@ -82,7 +91,7 @@ void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& no
               const Innovations& innovations, std::vector<double>& cost) {
     const std::size_t n = o.y.size();
     cost.resize(n);
-    const double nu = std::exp(noise.log_tail), constant = t_constant(nu);
+    const double nu = std::exp(noise.log_tail), constant = stats::StudentLaw(nu).log_height();
     double variance = 1.0, log_scale = 0.0;  // mostly the same as the row before's
     for (std::size_t i = 0; i < n; ++i) {
         const double z = innovations.z[i];
@@ -145,7 +154,7 @@ double cost_sum(const Observable& o, const Predicted& p, const NoiseParameters& 
             sum += weights.empty() ? cost[i] : weights[i] * cost[i];
         return sum;
     }
-    const double nu = std::exp(noise.log_tail), constant = t_constant(nu);
+    const double nu = std::exp(noise.log_tail), constant = stats::StudentLaw(nu).log_height();
     LogProduct tails, scales;
     double rows = 0.0, others = 0.0, unit = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -171,6 +180,7 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
     filter(o, p, noise, innovations);
     costs_of(o, p, noise, innovations, out.cost);
     out.innovation = std::move(innovations.z);
+    const stats::StudentLaw law(std::exp(noise.log_tail));
     for (std::size_t i = 0; i < out.innovation.size(); ++i) {
         double& z = out.innovation[i];
         const RowRole role = innovations.role[i];
@@ -178,6 +188,8 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
             z = ((o.y[i] > 0.5 ? 1.0 : 0.0) - z) / std::sqrt(z * (1 - z));
         else if (is_cut(role))
             z = (role == RowRole::Low ? 1 : -1) * stats::normal_quantile(clip_likelihood(role, z) / 2);
+        else if (role == RowRole::Plain && innovations.mixed.empty() && of_row(p.lapse, i) > 0.0)
+            z = quantile_residual(p, i, z, std::sqrt(innovations.variance[i]), law);
     }
 }
 

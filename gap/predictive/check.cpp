@@ -7,9 +7,11 @@
 #include "gap/predictive/main_covariates.h"
 #include "gap/predictive/posterior.h"
 #include "gap/predictive/replicate.h"
+#include "gap/stats/exchange.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap {
@@ -62,26 +64,38 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
             observables[o].noise == NoiseKind::Level ? "added by a row" : "measured − simulated");
     }
     RandomStream random(seed, fmt::format("gap/posterior {}", extended));
-    const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;
-    const auto states = posterior_states(model, fit.freed, mode, count, random);
     // values[o][k]: of observable o the curves of replicate k.
     using Curves = std::vector<std::vector<double>>;
-    std::vector<std::vector<Curves>> values(observables.size(), std::vector<Curves>(count));
-    in_parallel(count, study.threads(), [&](std::size_t k) {
-        RandomStream own(seed, fmt::format("gap/replicate {} {}", extended, k));
-        Prediction drawn;
-        model.predict(states[k].values, drawn);
-        for (std::size_t o = 0; o < observables.size(); ++o) {
-            Observable replicate = observables[o];
-            replicate.y = replicated(observables[o], drawn[o], states[k].noise[o], own);
-            values[o][k] = discrepancies[o].values_of(residuals_of(replicate, at_fit[o], mode.noise[o]));
-        }
+    std::vector<std::vector<Curves>> values(observables.size());
+    const auto replicate_until = [&](std::size_t count) {
+        const std::size_t so_far = values.front().size();
+        const auto states = posterior_states(model, fit.freed, mode, count - so_far, random);
+        for (auto& of_observable : values)
+            of_observable.resize(count);
+        in_parallel(states.size(), study.threads(), [&](std::size_t k) {
+            RandomStream own(seed, fmt::format("gap/replicate {} {}", extended, so_far + k));
+            Prediction drawn;
+            model.predict(states[k].values, drawn);
+            for (std::size_t o = 0; o < observables.size(); ++o) {
+                Observable replicate = observables[o];
+                replicate.y = replicated(observables[o], drawn[o], states[k].noise[o], own);
+                values[o][so_far + k] =
+                    discrepancies[o].values_of(residuals_of(replicate, at_fit[o], mode.noise[o]));
+            }
+        });
+        std::vector<PredictiveCheck> checks;
+        for (std::size_t o = 0; o < observables.size(); ++o)
+            checks.push_back({observables[o].name, observables[o].unit, extended, static_cast<int>(count),
+                              discrepancies[o].curves(measured[o], values[o])});
+        return checks;
+    };
+    const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;
+    auto checks = replicate_until(count);
+    const bool doubtful = std::ranges::any_of(checks, [](const PredictiveCheck& check) {
+        return std::ranges::any_of(check.curves,
+                                   [](const auto& curve) { return stats::in_doubt(curve.tail); });
     });
-    std::vector<PredictiveCheck> checks;
-    for (std::size_t o = 0; o < observables.size(); ++o)
-        checks.push_back({observables[o].name, observables[o].unit, extended, static_cast<int>(count),
-                          discrepancies[o].curves(measured[o], values[o])});
-    return checks;
+    return doubtful ? replicate_until(stats::kDrawsInDoubt * count) : checks;
 }
 
 }  // namespace puckloop::gap

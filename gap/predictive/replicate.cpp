@@ -64,8 +64,8 @@ void add_carried(const Observable& o, const Predicted& p, const NoiseParameters&
         }
         const double sd = scale.at(i), news = student(nu, random);
         const double kept = starts ? 0.0 : std::pow(noise.carry, o.steps.empty() ? 1 : o.steps[i]);
-        error = kept * error + std::sqrt(1 - kept * kept) * news + lapse_of(p, i, random) / sd;
-        y[i] += sd * error;
+        error = kept * error + std::sqrt(1 - kept * kept) * news;
+        y[i] += sd * error + lapse_of(p, i, random);
         if (has_line)
             y[i] += p.line_amplitude * (o.gate.empty() ? 1.0 : o.gate[i]) *
                     (cosine * std::cos(omega * o.time[i]) + sine * std::sin(omega * o.time[i]));

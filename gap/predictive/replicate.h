@@ -1,8 +1,8 @@
 #pragma once
 // Data as a fitted model makes it.
 //
-// Deviations: 1. an outlier or a lapse is carried over to the next rows as other errors are, as the
-// likelihood has it. 2. Where values do not keep to the instrument's step (turned sums), rounding is part of
+// Deviations: 1. an outlier is carried over to the next rows as other errors are, as the likelihood has it
+// (a lapse is not). 2. Where values do not keep to the instrument's step (turned sums), rounding is part of
 // the errors.
 
 #include "base/random.h"

@@ -156,6 +156,11 @@ double fitted_tail(const std::vector<double>& null, double observed) {
     return std::max(gamma_tail(shape, shape + z * std::sqrt(shape)), kLeastTail);
 }
 
+bool in_doubt(double p) {
+    constexpr double kSurely = 1e-9, kHardly = 1e-3;
+    return p > kSurely && p < kHardly;
+}
+
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
               const TestOptions& options, std::string_view stream) {
     if (!std::isfinite(observed)) return 1.0;
@@ -163,15 +168,19 @@ double null_p(double observed, double units, const std::function<double(RandomSt
     const double nearly = observed - 1e-12 * std::fabs(observed);  // the same permutation, summed otherwise
     std::vector<double> null;
     int hits = 0;
-    for (int i = 0; i < options.permutations && hits < kHitsToStop; ++i) {
-        null.push_back(draw(random));
-        if (null.back() >= nearly) ++hits;
-    }
-    const double drawn = static_cast<double>(null.size());
-    if (hits >= kHitsToStop) return hits / drawn;
-    const double counted = (hits + 1) / (drawn + 1);
-    if (hits >= kHitsForCount || units < kUnitsForTail) return counted;
-    return std::min(counted, fitted_tail(null, observed));
+    const auto p_of_draws = [&](int most) {
+        while (static_cast<int>(null.size()) < most && hits < kHitsToStop) {
+            null.push_back(draw(random));
+            if (null.back() >= nearly) ++hits;
+        }
+        const double drawn = static_cast<double>(null.size());
+        if (hits >= kHitsToStop) return hits / drawn;
+        const double counted = (hits + 1) / (drawn + 1);
+        if (hits >= kHitsForCount || units < kUnitsForTail) return counted;
+        return std::min(counted, fitted_tail(null, observed));
+    };
+    const double p = p_of_draws(options.permutations);
+    return in_doubt(p) ? p_of_draws(kDrawsInDoubt * options.permutations) : p;
 }
 
 Finding begun(std::string_view test, std::string_view covariate, const Pairs& pairs) {

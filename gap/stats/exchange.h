@@ -12,7 +12,8 @@
 //    is then taken off); over all runs otherwise.
 // 4. A covariate that varies both ways, mostly between runs, gives one value a run.
 // p: (hits + 1) / (permutations + 1); with 20 units or more and few hits a gamma distribution with the first
-// three moments of the permuted statistics carries the tail farther. A test ends early at 20 hits.
+// three moments of the permuted statistics carries the tail farther, over five times the permutations where p
+// is near what is decided by. A test ends early at 20 hits.
 
 #include "base/random.h"
 #include "gap/stats/finding.h"
@@ -45,6 +46,11 @@ double permutation_p(const Pairs& pairs, const std::function<double(const std::v
 /// P(X > observed) of a gamma distribution (Pearson III) with the mean, spread and skewness of `null`;
 /// at least 1e-12.
 double fitted_tail(const std::vector<double>& null, double observed);
+
+/// Is p so near the bounds that things are decided by (1e-4 after correction) that the chance of the draws
+/// could decide? Then so many times as many are drawn.
+bool in_doubt(double p);
+inline constexpr int kDrawsInDoubt = 5;
 
 /// The same for any way to draw a null value of the statistic.
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,

@@ -56,7 +56,7 @@ Finding compared(const Series& residual, const std::vector<double>& label, std::
                  std::string_view name, const std::vector<std::string>& label_names,
                  const TestOptions& options) {
     Pairs pairs = prepared(residual, label);
-    pairs.y = winsorised(pairs.y);
+    pairs.y = pulled_in(residual, pairs.y);
     Finding finding = begun(test, name, pairs);
     std::map<long, int> number;
     for (const double one : pairs.x)
@@ -102,7 +102,7 @@ Finding shape_test(const Series& residual, const std::vector<double>& covariate,
     Pairs pairs = prepared(residual, covariate);
     Finding finding = begun("shape", name, pairs);
     if (pairs.size() < kLeastUnits) return too_few(finding, pairs);
-    pairs.y = winsorised(pairs.y);
+    pairs.y = pulled_in(residual, pairs.y);
     int count = 0;
     std::vector<int> bin = bins_of(pairs.x, count);
     judge(pairs, {std::move(bin), static_cast<std::size_t>(count)}, options, fmt::format("shape/{}", name),

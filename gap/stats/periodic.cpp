@@ -47,7 +47,7 @@ std::vector<Segment> segments_of(const Series& residual, const std::vector<doubl
     for (std::size_t i = 0; i < all.size(); i += step)
         chosen.push_back(std::move(all[i]));
     for (Segment& s : chosen) {
-        s.value = winsorised(s.value);
+        s.value = pulled_in(residual, s.value);
         const double centre = mean(s.value);
         for (double& v : s.value)
             v -= centre;

@@ -44,7 +44,7 @@ Finding serial_test(const Series& residual, const TestOptions& options) {
     finding.effect_unit = "correlation";
     finding.units = static_cast<double>(series.size());
     if (series.size() < 10) return not_asked(finding);
-    series.value = winsorised(series.value);
+    series.value = pulled_in(residual, series.value);
     finding.statistic = finding.effect = autocorrelation(series, 1).front();
     const std::vector<Stretch> runs = runs_of(series.run);
     Series shuffled = series;

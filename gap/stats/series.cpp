@@ -1,5 +1,7 @@
 #include "gap/stats/series.h"
 
+#include "gap/stats/robust.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -49,6 +51,10 @@ bool varies(const std::vector<double>& values) {
         first = v;
     }
     return false;
+}
+
+std::vector<double> pulled_in(const Series& series, const std::vector<double>& values) {
+    return series.events ? values : winsorised(values);
 }
 
 std::vector<double> steps_of(const std::vector<double>& values) {

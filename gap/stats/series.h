@@ -14,6 +14,9 @@ namespace puckloop::gap::stats {
 struct Series {
     std::vector<double> value;
     std::vector<int> run;
+    /// What happens or not: rare events are all there is to see, no wild values, and the rank of a row says
+    /// how likely it was more than what came of it.
+    bool events = false;
 
     std::size_t size() const { return value.size(); }
 };
@@ -54,6 +57,9 @@ std::vector<std::size_t> ordered(std::size_t count, const Less& less) {
     std::ranges::stable_sort(order, less);
     return order;
 }
+
+/// Values as a test of the series takes them: wild ones pulled in (robust.h), events as they are.
+std::vector<double> pulled_in(const Series& series, const std::vector<double>& values);
 
 std::vector<Stretch> runs_of(const std::vector<int>& run);
 

@@ -71,7 +71,9 @@ std::vector<Finding> structure_table(const StructureInput& input, const TestOpti
     if (!input.time.empty()) table.push_back(periodic_test(input.residual, input.time, options));
     table.push_back(outlier_test(input.residual, options));
     table.push_back(evenness_test(inside(input.residual, input.raw), options));
-    if (varies(input.level)) table.push_back(spread_test(input.residual, input.level, "level", options));
+    // How far events scatter follows from how likely they are.
+    if (varies(input.level) && !input.residual.events)
+        table.push_back(spread_test(input.residual, input.level, "level", options));
     if (!input.raw.empty()) table.push_back(held_test({input.raw, input.residual.run}, options));
     adjust_together({&table, 1});
     return table;

@@ -42,6 +42,23 @@ double student_quantile(double p, double degrees) {
     return boost::math::quantile(boost::math::students_t(degrees), p);
 }
 
+StudentLaw::StudentLaw(double degrees)
+    : degrees_(degrees),
+      log_height_(std::lgamma((degrees + 1) / 2) - std::lgamma(degrees / 2) -
+                  0.5 * std::log(degrees * std::numbers::pi)) {}
+
+double StudentLaw::density(double t) const {
+    return std::exp(log_height_ - (degrees_ + 1) / 2 * std::log1p(t * t / degrees_));
+}
+
+double StudentLaw::tail(double t) const {
+    return boost::math::cdf(boost::math::complement(boost::math::students_t(degrees_), t));
+}
+
+double StudentLaw::beyond(double chance) const {
+    return boost::math::quantile(boost::math::complement(boost::math::students_t(degrees_), chance));
+}
+
 double binomial_tail(unsigned of, double share, unsigned count) {
     if (count == 0) return 1.0;
     if (count > of || !(share > 0)) return 0.0;

@@ -17,6 +17,18 @@ double poisson_tail(double mean, unsigned count);
 double fisher_tail(double f, double numerator, double denominator);
 /// t with P(T <= t) = p of Student's distribution, 0 < p < 1.
 double student_quantile(double p, double degrees);
+/// Student's distribution, the constant of its density found once.
+class StudentLaw {
+  public:
+    explicit StudentLaw(double degrees);
+    double log_height() const { return log_height_; }  ///< ln of the density at 0
+    double density(double t) const;
+    double tail(double t) const;         ///< P(T > t)
+    double beyond(double chance) const;  ///< t with P(T > t) = chance, 0 < chance < 1
+
+  private:
+    double degrees_, log_height_;
+};
 /// P(X >= count) of a binomial variable, 0 <= share <= 1.
 double binomial_tail(unsigned of, double share, unsigned count);
 

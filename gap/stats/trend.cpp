@@ -18,7 +18,7 @@ Finding trend_test(const Series& residual, const std::vector<double>& covariate,
     if (pairs.size() < kLeastUnits) return too_few(finding, pairs);
     const std::vector<double> x = ranks(pairs.x);
     Pairs ranked = pairs;
-    ranked.y = ranks(pairs.y);
+    if (!residual.events) ranked.y = ranks(pairs.y);
     const double middle = mean(x);
     const auto slope = [&](const std::vector<double>& y) {
         double sum = 0;
@@ -31,7 +31,7 @@ Finding trend_test(const Series& residual, const std::vector<double>& covariate,
         ranked, [&](const auto& y) { return std::fabs(slope(y)); }, options, fmt::format("trend/{}", name));
     finding.effect = slope_of(pairs) * (quantile(pairs.x, 0.95) - quantile(pairs.x, 0.05));
     finding.relative = beside_scatter(finding.effect, residual);
-    finding.shape = shape_words(profile_of(pairs.x, winsorised(pairs.y)), name);
+    finding.shape = shape_words(profile_of(pairs.x, pulled_in(residual, pairs.y)), name);
     return finding;
 }
 
@@ -40,7 +40,7 @@ Finding step_test(const Series& residual, const std::vector<double>& covariate, 
     Pairs pairs = prepared(residual, covariate);
     Finding finding = begun("step", name, pairs);
     if (pairs.size() < 2 * kLeastUnits) return too_few(finding, pairs);
-    pairs.y = winsorised(pairs.y);
+    pairs.y = pulled_in(residual, pairs.y);
     const auto order = ordered(pairs.size(), [&](auto a, auto b) { return pairs.x[a] < pairs.x[b]; });
     const double n = static_cast<double>(pairs.size());
     const auto least = static_cast<std::size_t>(std::max(2.0, n / 20));

@@ -76,10 +76,12 @@ struct Tried {
 /// One observable row by row; `run` and `row` index Experiment::runs and its tables.
 struct Series {
     std::string observable, unit;
+    bool events = false;  ///< measured is 0 or 1, simulated a probability
     std::vector<std::uint32_t> run, row;
     std::vector<double> measured, before, after;  ///< simulated before and after the chosen effects
     std::vector<double> scale;                    ///< noise sd after, same unit
-    /// Standardised innovations (autocorrelation taken out): what structure tests look at.
+    /// What structure tests look at: standardised innovations (autocorrelation taken out); of events what
+    /// happened less its probability, over the root mean square of its deviation.
     std::vector<double> innovation_before, innovation_after;
 };
 

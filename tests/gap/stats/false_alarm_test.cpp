@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <functional>
 
 using namespace puckloop;
@@ -50,6 +51,66 @@ TEST_CASE("even scatter, wild values and all, is called uneven in one case of tw
     });
     CHECK(rate < kMost);
     CHECK(rate > 0.02);
+}
+
+namespace {
+
+/// Events that come with a chance of `most` times x, x in steps of a fifth, less that chance.
+Series made_events(int runs, int rows, double most, std::vector<double>& x, RandomStream& random) {
+    Series y;
+    y.events = true;
+    for (int r = 0; r < runs; ++r)
+        for (int i = 0; i < rows; ++i) {
+            x.push_back(static_cast<double>(random.below(5)) / 5);
+            const double chance = std::max(most * x.back(), 1e-3);
+            const double happened = random.uniform() < chance ? 1.0 : 0.0;
+            y.value.push_back(happened - chance);
+            y.run.push_back(r);
+        }
+    return y;
+}
+
+}  // namespace
+
+TEST_CASE("events that come as often as expected show nothing over what they depend on") {
+    const auto rate = [](const auto& test) {
+        return alarms(kCases, [&](RandomStream& random, const TestOptions& options) {
+            std::vector<double> x;
+            const Series y = made_events(8, 100, 0.08, x, random);
+            return test(y, x, "x", options).p;
+        });
+    };
+    CHECK(rate(trend_test) < kMost);
+    CHECK(rate(shape_test) < kMost);
+    CHECK(rate(step_test) < kMost);
+}
+
+TEST_CASE("events that come more often where x is high show it") {
+    RandomStream random(5, "more events");
+    std::vector<double> x;
+    Series y = made_events(8, 200, 0.08, x, random);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (x[i] > 0.5 && random.uniform() < 0.06) y.value[i] = 0.94;  // happened
+    const TestOptions options{.seed = 1, .permutations = 299};
+    CHECK(trend_test(y, x, "x", options).p < 1e-3);
+    CHECK(shape_test(y, x, "x", options).p < 1e-3);
+}
+
+TEST_CASE("p near what is decided by does not hang on the seed") {
+    RandomStream random(3, "near the bound");
+    std::vector<double> x = made_covariate(1, 400, 0.0, random);
+    Series y = made_noise(1, 400, 0.0, random);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        y.value[i] += 0.35 * x[i];
+    double least = 1.0, most = 0.0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const double p = trend_test(y, x, "x", {.seed = seed, .permutations = 299}).p;
+        least = std::min(least, p);
+        most = std::max(most, p);
+    }
+    CHECK(most < 1e-3);
+    CHECK(least > 1e-9);
+    CHECK(most / least < 12);
 }
 
 TEST_CASE("noise and covariate that both wander raise no more trends, shapes or steps than chance") {
