@@ -5,6 +5,7 @@
 #include "gap/diagnostics/series.h"
 #include "gap/fit_test/wander.h"
 #include "gap/predictive/check.h"
+#include "gap/predictive/discrepancies.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/validate/placements.h"
 
@@ -49,26 +50,16 @@ std::string farthest_place(const PredictiveCurve& curve, const std::string& unit
                        curve.high[place]);
 }
 
-/// Sums have tests of their own: where their errors are next to none replicates differ by rounding alone. Of
-/// what happens or not a rare one more is farther than any replicate goes, by chance.
-bool is_replicated(const Observable& observable) {
-    return observable.noise == NoiseKind::Carry && !is_counter(observable.name);
-}
-
-/// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni. How large
-/// errors are (the marginal law) and how they carry over is the noise's business.
-std::vector<Leftover> not_replicated(const Study& study, const std::vector<PredictiveCheck>& checks) {
+/// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni.
+std::vector<Leftover> not_replicated(const std::vector<PredictiveCheck>& checks) {
     std::vector<Leftover> all;
     double looks = 0.0;
-    for (std::size_t o = 0; o < checks.size(); ++o) {
-        if (!is_replicated(study.model().observables()[o])) continue;
-        for (const PredictiveCurve& curve : checks[o].curves) {
-            if (curve.residual != PredictiveCurve::Residual::Vertical) continue;
+    for (const PredictiveCheck& check : checks)
+        for (const PredictiveCurve& curve : check.curves) {
+            if (!curve.counts) continue;
             looks += 1;
-            all.push_back(
-                {checks[o].observable, curve.name, curve.tail, farthest_place(curve, checks[o].unit)});
+            all.push_back({check.observable, curve.name, curve.tail, farthest_place(curve, check.unit)});
         }
-    }
     for (Leftover& one : all)
         one.p_value = std::min(1.0, looks * one.p_value);
     std::erase_if(all, [](const Leftover& one) { return one.p_value > thresholds::kReported; });
@@ -92,7 +83,7 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
     if (std::ranges::any_of(observables, is_replicated)) {
         found.predictive = predictive_checks(study, chosen.final, !chosen.final.effects.empty(), seed);
-        const auto unlike = not_replicated(study, found.predictive);
+        const auto unlike = not_replicated(found.predictive);
         found.leftovers.insert(found.leftovers.end(), unlike.begin(), unlike.end());
     }
     found.structures = found.leftovers;

@@ -12,31 +12,34 @@ namespace puckloop::gap {
 
 namespace {
 
-/// Causes that are doubted by themselves go where the first of them stands without them.
-void let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged& result) {
-    if (out.effects.empty()) return;
+/// Causes that are doubted by themselves go where the first of them stands without them; then true, and those
+/// that stay have to be asked again.
+bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged& result) {
+    if (out.effects.empty()) return false;
     auto rest = without_doubted(study, result.chosen, out.effects, out.why);
     if (!rest) {
         result.grounds.out_of_role = out.why;
         result.grounds.law_alone = out.law_alone;
-        return;
+        return false;
     }
     for (const std::size_t one : out.effects)
         result.changes.push_back({study.candidates()[one].effect->name, out.why});
     result.chosen = std::move(*rest);
     result.diagnosis = diagnosed(study, result.chosen, how.seed);
     result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
+    return true;
 }
 
-void ask_each(const Study& study, const Judging& how, Judged& result) {
+bool ask_each(const Study& study, const Judging& how, Judged& result) {
     const Diagnosis& found = result.diagnosis;
     // That a sum wanders as well takes nothing from what a cause makes of it.
     std::vector<Leftover> structures = found.leftovers;
     std::erase_if(structures, [](const Leftover& one) { return one.covariate == kWanderCovariate; });
-    let_go(study, how,
-           {outweighed(study, result.chosen.selection, found.free_forms, structures, share_allowed(study)),
-            "leaves too much of what it acts on"},
-           result);
+    return let_go(
+        study, how,
+        {outweighed(study, result.chosen.selection, found.free_forms, structures, share_allowed(study)),
+         "leaves too much of what it acts on"},
+        result);
 }
 
 OutOfRole roles(const Study& study, const Judging& how, const Judged& result) {
@@ -62,8 +65,9 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
     result.diagnosis = std::move(diagnosis);
     Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
     const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
-    if (goes_on()) ask_each(study, how, result);
-    if (goes_on()) let_go(study, how, roles(study, how, result), result);
+    while (goes_on() && (ask_each(study, how, result) ||
+                         (goes_on() && let_go(study, how, roles(study, how, result), result)))) {
+    }
     if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
     result.doubt = doubt_of(g);
     if (how.ask_all && how.ask && !result.doubt.empty()) ask_the_rest(study, how, result);

@@ -92,8 +92,8 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
     const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;
     auto checks = replicate_until(count);
     const bool doubtful = std::ranges::any_of(checks, [](const PredictiveCheck& check) {
-        return std::ranges::any_of(check.curves,
-                                   [](const auto& curve) { return stats::in_doubt(curve.tail); });
+        return std::ranges::any_of(
+            check.curves, [](const auto& curve) { return curve.counts && stats::in_doubt(curve.tail); });
     });
     return doubtful ? replicate_until(stats::kDrawsInDoubt * count) : checks;
 }

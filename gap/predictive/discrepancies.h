@@ -11,6 +11,12 @@
 
 namespace puckloop::gap {
 
+/// Do curves of means and sizes of an observable count in the decision? Sums have tests of their own: where
+/// their errors are next to none replicates differ by rounding alone. Of what happens or not a rare one more
+/// is farther than any replicate goes, by chance. (How large errors are, the marginal law, and how they carry
+/// over is the noise's business and never counts.)
+bool is_replicated(const Observable& observable);
+
 class Discrepancies {
   public:
     /// Marginal law, autocorrelation, means against each of the covariates (a value a row), spread per run.
