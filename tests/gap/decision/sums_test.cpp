@@ -28,6 +28,14 @@ State pushed_state(const Study& study) {
     return state;
 }
 
+Fit fit_of_pushes(const Study& study) {
+    const auto& all = study.candidates();
+    const auto effect = std::find_if(all.begin(), all.end(), [](const Candidate& one) {
+        return one.effect->name == std::string_view("collision_push");
+    });
+    return study.fit_set({static_cast<std::size_t>(effect - all.begin())}, study.fit_none().fitted.state);
+}
+
 const FreeForm& form_of(const std::vector<FreeForm>& forms, const std::string& observable) {
     return *std::find_if(forms.begin(), forms.end(),
                          [&](const FreeForm& form) { return form.observable == observable; });
@@ -52,6 +60,20 @@ TEST_CASE("pushes by chance keep to nothing, those before a reversal do", "[gap]
     CHECK(pattern->expected < 0.3 * pattern->pushes);
 }
 
+TEST_CASE("pushes each of which takes the one before back are none", "[gap][pushes]") {
+    double way = 0.012;  // m
+    const Experiment experiment = toy_drives([&](RandomStream& random, int, int, double) {
+        const bool now = random.uniform() < 0.03;
+        if (now) way = -way;
+        return Made{1.0, now ? way : 0.0};
+    });
+    const Study study(experiment, 1);
+    const auto pattern = push_pattern(experiment, study.model(), fit_of_pushes(study).fitted.state);
+    REQUIRE(pattern.has_value());
+    CHECK(pattern->where == "against the push before");
+    CHECK(pattern->pushes > 1.5 * pattern->expected);
+}
+
 TEST_CASE("how often a robot is pushed is known as well as so few pushes can say", "[gap][pushes]") {
     const double rate = 0.03;  // a row
     double pushes = 0.0;
@@ -61,12 +83,7 @@ TEST_CASE("how often a robot is pushed is known as well as so few pushes can say
         return Made{1.0, now ? 0.012 : 0.0};
     });
     const Study study(experiment, 1);
-    const auto& all = study.candidates();
-    const auto effect = std::find_if(all.begin(), all.end(), [](const Candidate& one) {
-        return one.effect->name == std::string_view("collision_push");
-    });
-    const Fit fit =
-        study.fit_set({static_cast<std::size_t>(effect - all.begin())}, study.fit_none().fitted.state);
+    const Fit fit = fit_of_pushes(study);
     const Precision precision = precision_of(study, fit);
     const std::size_t index = *study.model().find("push.rate");
     for (std::size_t j = 0; j < fit.freed.size(); ++j) {
