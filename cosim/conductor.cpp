@@ -110,7 +110,6 @@ Outcome Conductor::State::run() {
         current_ = kNobody;
     } catch (const std::exception& error) {
         fail(outcome, error.what());
-        outcome.refused = !fits_;
     }
     outcome.wind_up = wind_up_at_;
     outcome.simulated = end_;

@@ -87,7 +87,6 @@ struct Outcome {
     Time simulated = 0;             ///< reached by every node
     double wall_s = 0;
     bool went_on = false;      ///< from a snapshot
-    bool refused = false;      ///< Failed, because the snapshot does not fit this run: bad input
     double restored_s = 0;     ///< of these: bringing the nodes to where the run goes on from
     std::uint64_t grants = 0;  ///< to all nodes together (differs with placement and load)
     std::string trace_sha256;

@@ -122,7 +122,6 @@ void Conductor::State::go_on_from(const RunSnapshot& from) {
     const auto begin = WallClock::now();
     const Time time = from.time;
     std::vector<bool> had_state;
-    fits_ = false;
     if (from.nodes.size() != handles_.size()) throw InputError("", "nodes", "another number of nodes");
     for (std::size_t n = 0; n < handles_.size(); ++n) {
         if (from.nodes[n].name != handles_[n]->name() || from.nodes[n].has_state != handles_[n]->has_state())
@@ -140,7 +139,6 @@ void Conductor::State::go_on_from(const RunSnapshot& from) {
     } catch (const CodecError& error) {
         throw InputError("", "links", error.what());
     }
-    fits_ = true;
     stats_ = from.stats;
     for (std::size_t n = 0; n < handles_.size(); ++n) {
         current_ = n;

@@ -148,7 +148,6 @@ class Conductor::State {
     std::exception_ptr trace_failure_;  ///< of the sinks
     bool trace_ended_ = false;          ///< by a failure: what came after it would leave a gap
     std::optional<RandomStream> chop_;
-    bool fits_ = true;  // the snapshot to go on from, as far as it has been looked at
     std::unique_ptr<Workers> workers_;
     std::optional<Trial> thread_trial_;         ///< of whether helpers serve
     std::vector<std::size_t> here_;             ///< nodes of this process just granted, for this thread

@@ -29,9 +29,13 @@ TEST_CASE("snapshots of another run, and options that contradict them, are refus
                 .run("saving",
                      {scenario, "--duration", "1.5", "--save-at", "1.2s", "--save", file, "--in-process"})
                 .status == 0);
+    fs::create_directories(bench.out("refused"));
+    bench.file("refused/trace.csv", "of an earlier run\n");
+    bench.file("refused/.puckloop", "trace.csv\n");
     const auto refused = [&](Words words, const Words& said) {
         words.insert(words.begin(), {"--from", file});
         check_one_line(bench.run("refused", words), 2, said);
+        CHECK(text_of(bench.out("refused") / "trace.csv") == "of an earlier run\n");
     };
     refused({scenario.string()}, {"--from", "whatever a scenario says"});
     refused({"--seed", "3"}, {"--from", "--seed"});
@@ -44,7 +48,7 @@ TEST_CASE("snapshots of another run, and options that contradict them, are refus
     refused({"--fault", "hang node=robot0.pic begin=\"1 s\""},
             {"run.snap", "fault robot0.pic.hang", "begins at 1 s, before the snapshot", "1.2 s\" or later"});
     refused({"--fault", "drop link=robot0.uart begin=\"1 s\" count=1"},
-            {"robot0.uart", "would have changed what arrived at", "before the snapshot"});
+            {"run.snap", "robot0.uart", "would have changed what arrived at", "before the snapshot"});
     const std::string text = text_of(scenario);
     const auto change = [&](const std::string& what, const std::string& with, const Words& said) {
         std::string other = text;

@@ -42,11 +42,10 @@ struct Options {
     bool list_parameters = false;
 };
 
-/// Exit status: 0 success, 1 the run failed, 2 bad input; signals (Ctrl-C) count as a shell would count them.
+/// Exit status: 0 success, 1 the run failed; signals (Ctrl-C) count as a shell would count them.
 int status_of(const cosim::Outcome& outcome, int signal) {
     constexpr int kShellSignal = 128;
     if (outcome.reason == cosim::EndReason::Interrupted) return kShellSignal + signal;
-    if (outcome.refused) return 2;
     return outcome.success ? 0 : 1;
 }
 

@@ -110,7 +110,7 @@ void check_run(const json& then, const json& now, const std::string& file) {
 }
 
 /// Faults that begin before `time` must be the same, in the same places of the list. Those of links may be
-/// others: the conductor sees whether they act.
+/// others: check_link_faults() finds whether they act.
 void check_faults(const json& then, const json& now, cosim::Time time, const std::string& file) {
     const auto early = [&](const json& list, std::size_t i) {
         return i < list.size() && list[i].at("begin").get<cosim::Time>() < time &&

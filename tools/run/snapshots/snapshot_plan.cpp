@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/resume/run_snapshot.h"
+#include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
 #include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/writable_file.h"
@@ -61,6 +62,14 @@ void quiet_outside(RunSetup& setup, cosim::Time until) {
     }
 }
 
+void check_faults(const cosim::RunSnapshot& snapshot, const RunSetup& setup, const std::string& file) {
+    try {
+        cosim::check_link_faults(snapshot, setup.links, setup.scenario.faults, setup.scenario.seed);
+    } catch (const InputError& error) {
+        throw InputError(file, "", error.what());
+    }
+}
+
 }  // namespace
 
 RunRequest going_on(const RunRequest& request) {
@@ -101,7 +110,10 @@ void plan_snapshots(RunSetup& setup, const RunRequest& request) {
     const std::string file = request.from.string();
     if (!request.from.empty()) setup.from = fs::absolute(request.from);
     setup.from_time = request.snapshot->time;
-    if (!request.same_origin) check_origin(request.snapshot->origin, setup, request.snapshot->time, file);
+    if (!request.same_origin) {
+        check_origin(request.snapshot->origin, setup, request.snapshot->time, file);
+        check_faults(*request.snapshot, setup, file);
+    }
     if (setup.scenario.duration && cosim::from_seconds(*setup.scenario.duration) < request.snapshot->time)
         throw InputError("", "--duration",
                          fmt::format("{:g} s is before the snapshot, {:g} s", *setup.scenario.duration,
