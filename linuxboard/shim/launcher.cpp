@@ -152,12 +152,7 @@ void drop_handlers() {
 }  // namespace
 
 Launcher::Launcher(const LinuxSpec& spec)
-    : spec_(spec), file_(find_program(spec.program)), shim_(shim_file(spec)) {
-    if (!spec.log.empty()) {
-        log_fd_ = open(spec.log.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
-        if (log_fd_ < 0)
-            throw InputError(spec.log, "", std::strerror(errno), "a log file that can be written");
-    }
+    : spec_(spec), file_(find_program(spec.program)), shim_(shim_file(spec)), log_(spec.log) {
     prepare_page();
 }
 
@@ -165,7 +160,6 @@ Launcher::~Launcher() {
     if (page_ != nullptr) munmap(page_, wire::kSharedSize);
     if (video_ != nullptr) munmap(video_, spec_.cameras.size() * wire::kVideoSize);
     if (page_fd_ >= 0) close(page_fd_);
-    if (log_fd_ >= 0) close(log_fd_);
 }
 
 void Launcher::prepare_page() {
@@ -256,8 +250,8 @@ std::unique_ptr<Process> Launcher::start() {
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &mask);
     const pid_t pid = start_child({file_.c_str(), arguments.data(), variables.data(), stdin_file,
-                                   spec_.cwd.empty() ? nullptr : spec_.cwd.c_str(), log_fd_, page_fd_,
-                                   sockets[1], report[1], first, most, mask, entry});
+                                   spec_.cwd.empty() ? nullptr : spec_.cwd.c_str(), log_.descriptor(),
+                                   page_fd_, sockets[1], report[1], first, most, mask, entry});
     const int error = errno;
     pthread_sigmask(SIG_SETMASK, &mask, nullptr);
     errno = error;
@@ -280,9 +274,10 @@ std::unique_ptr<Process> Launcher::start() {
 }
 
 void Launcher::echo_output() {
-    if (!spec_.echo_output || log_fd_ < 0) return;
+    if (!spec_.echo_output || log_.descriptor() < 0) return;
     char text[4096];
-    for (ssize_t count; (count = pread(log_fd_, text, sizeof text, echoed_)) > 0; echoed_ += count) {
+    for (ssize_t count; (count = pread(log_.descriptor(), text, sizeof text, echoed_)) > 0;
+         echoed_ += count) {
         [[maybe_unused]] const auto written = write(STDOUT_FILENO, text, static_cast<std::size_t>(count));
     }
 }

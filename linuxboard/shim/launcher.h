@@ -2,6 +2,7 @@
 // How the program's first process is started under the preloaded library, with the memory that all its
 // processes share, its log and its descriptors.
 
+#include "linuxboard/shim/output_log.h"
 #include "linuxboard/shim/process.h"
 #include "linuxboard/shim/spec.h"
 #include "linuxboard/shim/wire.h"
@@ -27,6 +28,7 @@ class Launcher {
     const wire::Page& page() const { return *page_; }
     /// The frames of camera number `camera`, which the program maps: wire::kVideoSize bytes.
     char* video_memory(std::size_t camera);
+    OutputLog& log() { return log_; }
     /// What the program wrote to its log since the last call goes to this terminal too.
     void echo_output();
     /// Last line with text that the program wrote to its log, if there is a log file (last_line.h).
@@ -42,7 +44,7 @@ class Launcher {
     wire::Page* page_ = nullptr;
     char* video_ = nullptr;  // of all cameras
     int page_fd_ = -1;
-    int log_fd_ = -1;
+    OutputLog log_;
     off_t echoed_ = 0;
 };
 

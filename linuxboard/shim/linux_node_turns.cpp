@@ -18,6 +18,11 @@ using cosim::Message;
 using cosim::Time;
 using wire::Op;
 
+namespace {
+/// Requests between two looks at how long the log has become.
+constexpr std::uint64_t kLooksAtLog = 64;
+}  // namespace
+
 void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
     for (bool done = begin(until, inbox, outbox); !done;)
         done = resume(true);
@@ -130,6 +135,7 @@ void LinuxNode::answer(Client& client, Time now) {
 /// What the program asks for next; false if it has not asked yet.
 bool LinuxNode::listen(Client& client, bool wait) {
     const auto heard = client.process->try_hear(spec_.watchdog_s, wait, client.request, client.data);
+    if (!heard || requests_ % kLooksAtLog == 0) launcher_->log().release();
     if (!heard) return false;
     launcher_->echo_output();
     catch_up(client);

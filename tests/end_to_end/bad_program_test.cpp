@@ -55,6 +55,24 @@ TEST_CASE("a program's last words are shown as text") {
     CHECK_THAT(ended.err, !Contains("\x1b") && !Contains("[0m"));
 }
 
+TEST_CASE("a program that prints without end has a bounded log and a run of its usual length") {
+    const Workbench bench;
+    std::string logs[2];
+    for (const bool in_process : {false, true}) {
+        Words options{"--duration", "1.06"};
+        if (in_process) options.push_back("--in-process");
+        check_one_line(with_program(bench, options, {"/bin/yes"}), 1,
+                       {"robot0.linux", "never opened", "1.060 s"});
+        logs[in_process] = text_of(bench.out("o") / "robot0.linux.log");
+        constexpr std::size_t kMost = 64 << 20;
+        REQUIRE(logs[in_process].size() > kMost);
+        CHECK(logs[in_process].find_first_not_of("y\n") == kMost);
+        CHECK_THAT(logs[in_process].substr(kMost),
+                   Catch::Matches("puckloop: the other [1-9][0-9]* bytes of the output are left out\n"));
+    }
+    CHECK(logs[0] == logs[1]);
+}
+
 TEST_CASE("a program that crashes is named with its signal, time and last words") {
     const Workbench bench;
     for (const Words& placement : {Words{}, Words{"--in-process"}}) {
