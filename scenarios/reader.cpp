@@ -43,13 +43,13 @@ const TomlValue& Reader::require(std::string_view key) {
     return *value;
 }
 
-void Reader::fail_missing(std::string_view key) {
+void Reader::fail_missing(std::string_view key, std::string_view expected) {
     // A key that is near to it and that nobody asked for is the same one, misspelt.
     for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
         if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
         if (!nearest_name(name, {key}).empty()) fail_unknown(name, value.line, std::string(key));
     }
-    fail(key, fmt::format("'{}' is missing", key));
+    fail(key, fmt::format("'{}' is missing", key), expected);
 }
 
 void Reader::fail_unknown(std::string_view name, int line, const std::string& meant) const {

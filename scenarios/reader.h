@@ -53,12 +53,13 @@ class Reader {
 
     /// An InputError at `key` (or at the table's header if it is absent).
     [[noreturn]] void fail(std::string_view key, std::string_view problem, std::string_view expected = {});
+    /// The same where the key is absent; one that is near to it is named.
+    [[noreturn]] void fail_missing(std::string_view key, std::string_view expected = {});
     const std::string& file() const { return file_; }
 
   private:
     const TomlValue* find(std::string_view key);
     const TomlValue& require(std::string_view key);
-    [[noreturn]] void fail_missing(std::string_view key);
     [[noreturn]] void fail_unknown(std::string_view name, int line, const std::string& meant) const;
     double number(std::string_view key, const TomlValue& value, Dimension dimension);
     std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension,

@@ -98,6 +98,14 @@ void read_parameter(Reader& reader, const ParameterInfo& parameter, FaultSpec& f
     fault.set(parameter.key, value);
 }
 
+/// Links or nodes that can suffer a fault.
+std::string names_of(const Scenario& scenario, bool nodes) {
+    std::string names;
+    for (const FaultPlace& place : fault_places(scenario))
+        if (place.is_node == nodes) names += (names.empty() ? "" : ", ") + place.name;
+    return names.empty() ? "none" : names;
+}
+
 /// Of link or node; what is not there is refused with what is.
 FaultPlace find_place(Reader& reader, const Scenario& scenario) {
     // Asked for here, they are no misspelt 'link'.
@@ -105,19 +113,15 @@ FaultPlace find_place(Reader& reader, const Scenario& scenario) {
         reader.has(key);
     const bool by_node = reader.has("node");
     if (by_node && reader.has("link")) reader.fail("node", "both a link and a node are given", "one of them");
+    if (!by_node && !reader.has("link"))
+        reader.fail_missing("link", fmt::format("one of {}; or a node, one of {}", names_of(scenario, false),
+                                                names_of(scenario, true)));
     const char* const key = by_node ? "node" : "link";
     const std::string name = reader.text(key);
-    std::string known;
-    for (const FaultPlace& place : fault_places(scenario)) {
-        if (place.is_node != by_node) continue;
-        if (place.name == name) return place;
-        known += (known.empty() ? "" : ", ") + place.name;
-    }
-    if (by_node)
-        reader.fail(key, fmt::format("there is no node '{}' that can suffer a fault", name),
-                    known.empty() ? "a link" : known);
-    reader.fail(key, fmt::format("there is no link '{}' that can suffer a fault", name),
-                known.empty() ? "a robot with a [robot.linux] program" : known);
+    for (const FaultPlace& place : fault_places(scenario))
+        if (place.is_node == by_node && place.name == name) return place;
+    reader.fail(key, fmt::format("there is no {} '{}' that can suffer a fault", key, name),
+                names_of(scenario, by_node));
 }
 
 void check_end(Reader& reader, const char* key, const std::string& name, const FaultPlace& place) {
@@ -196,7 +200,8 @@ FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue
 
 void add_fault(std::string_view words, Scenario& scenario) {
     const TomlValue table = fault_table_of(words);
-    scenario.faults.push_back(read_fault("--fault", scenario.faults.size(), table, scenario));
+    scenario.faults.push_back(
+        read_fault(fmt::format("--fault \"{}\"", words), scenario.faults.size(), table, scenario));
 }
 
 }  // namespace puckloop::scenarios

@@ -39,7 +39,9 @@ TEST_CASE("firmware that cannot be used is refused with its file and place") {
     refused(bench, {"--firmware", "pic=" + bench.file("avr.hex", kAvrImage).string()},
             {"avr.hex", "another chip"});
     refused(bench, {"--firmware", "robot7.pic=x.hex"}, {"robot7.pic", "robot0.pic"});
-    refused(bench, {"--firmware", "x.hex"}, {"x.hex", "BOARD=IMAGE"});
+    refused(bench, {"--firmware", "x.hex"}, {"'x.hex' is not an assignment", "BOARD=IMAGE"});
+    refused(bench, {"--firmware", "tam="}, {"'tam=' names no image file", "BOARD=IMAGE"});
+    refused(bench, {"--firmware", "=x.hex"}, {"'=x.hex' names no board", "BOARD=IMAGE"});
 }
 
 TEST_CASE("a real image of the range-and-bearing board is none for the e-puck") {
@@ -93,6 +95,14 @@ TEST_CASE("options that make no sense are refused in one line") {
     refused(bench, {"--threads", "2"}, {"--threads", "--in-process"});
     refused(bench, {"--model", "nowhere.toml"}, {"nowhere.toml"});
     refused(bench, {"another.toml"}, {"another.toml"});
+    check_one_line(bench.puckloop({"run", bench.hello(), "--out", ""}), 2, {"--out", "is empty"});
+    for (const char* option : {"--model", "--events"})
+        refused(bench, {option, ""}, {option, "is empty"});
+    refused(bench, {"--paced", "--realtime"}, {"--realtime excludes --paced"});
+    refused(bench, {"--fault", "foo"},
+            {"--fault \"foo\": ",
+             "'link' is missing (expected one of robot0.uart, robot0.i2c; or a node, one of ", "robot0.pic"});
+    refused(bench, {"--fault", "drop lnk=robot0.uart"}, {"'lnk'", "perhaps 'link'"});
     check_one_line(bench.puckloop({"bench", "rab", "--pairs", "0"}), 2,
                    {"bench rab: --pairs", "see puckloop bench rab --help"});
     check_one_line(bench.puckloop({"trace", "rab", "nowhere", "--from", "5", "--to", "2"}), 2,

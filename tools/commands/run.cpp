@@ -163,12 +163,16 @@ void declare_run(Command& app, int& status) {
         "--no-translate", options->interpret,
         "interpret every instruction of the chips (default: hot code is translated to this machine's; "
         "the run is the same)");
-    command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
-    command->add_flag("--paced", request.paced,
-                      "the same, but Linux programs stay in simulated time: the run can be repeated");
+    Option* realtime =
+        command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
+    command
+        ->add_flag("--paced", request.paced,
+                   "the same, but Linux programs stay in simulated time: the run can be repeated")
+        ->excludes(realtime);
     command
         ->add_option("--events", request.events,
                      "[[event]] tables in place of the scenario's, such as events.toml of an earlier run")
+        ->check(not_empty())
         ->type_name("FILE");
     command
         ->add_option("--fault", request.faults,
@@ -194,8 +198,11 @@ void declare_run(Command& app, int& status) {
         ->check(not_empty())
         ->type_name("FILE");
     command->add_flag("--record", request.record, "write every message to record.csv, for `puckloop replay`");
-    command->add_option("--model", request.overlay, "overlay of physical parameters")->type_name("OVERLAY");
+    command->add_option("--model", request.overlay, "overlay of physical parameters")
+        ->check(not_empty())
+        ->type_name("OVERLAY");
     command->add_option("--out", request.out, "folder for the results (default: out/<scenario>)")
+        ->check(not_empty())
         ->type_name("DIR");
     command
         ->add_option("--stall", request.stall_seconds,

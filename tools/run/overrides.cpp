@@ -39,9 +39,12 @@ std::vector<BoardPlace> boards_of(Scenario& scenario) {
 /// "robot0.pic=x.hex", "tam0=x.elf", or "pic=x.hex" for all of a kind.
 void replace_firmware(Scenario& scenario, const std::string& assignment) {
     const auto equals = assignment.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
-        throw InputError("", "--firmware", fmt::format("'{}' is not an assignment", assignment),
-                         "BOARD=IMAGE");
+    const char* problem = equals == std::string::npos       ? "is not an assignment"
+                          : equals == 0                     ? "names no board"
+                          : equals + 1 == assignment.size() ? "names no image file"
+                                                            : nullptr;
+    if (problem != nullptr)
+        throw InputError("", "--firmware", fmt::format("'{}' {}", assignment, problem), "BOARD=IMAGE");
     const std::string wanted = assignment.substr(0, equals);
     const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
     std::string known;
