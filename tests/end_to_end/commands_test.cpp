@@ -24,6 +24,20 @@ TEST_CASE("every command has a help of its own") {
     CHECK_THAT(bench.puckloop({"--help"}).out, Contains("run"));
 }
 
+TEST_CASE("standard output that takes nothing is one line and a status") {
+    const Workbench bench;
+    for (const Words& words : {Words{"--help"},
+                               {"--version"},
+                               {"run", "--help"},
+                               {"run", "--list-parameters"},
+                               {"frames", "rab", "encode", "--payload", "1234"}}) {
+        Words all{"/bin/sh", "-c", "exec \"$0\" \"$@\" > /dev/full", PUCKLOOP_PROGRAM};
+        all.insert(all.end(), words.begin(), words.end());
+        INFO(words.back());
+        check_one_line(Process(all, bench.folder()).wait(), 1, {"standard output: cannot "});
+    }
+}
+
 TEST_CASE("exec runs an image on the bench and reports it") {
     const Workbench bench;
     const Ended ended = bench.puckloop({"exec", "--board", "pic", kImage, "--seconds", "0.5", "--json"});

@@ -31,6 +31,13 @@ void restore_surroundings() {
     std::signal(SIGCHLD, SIG_DFL);
 }
 
+/// `status`, if all that was printed has been written; else one line, and 1.
+int after_output(int status) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    std::fputs("puckloop: standard output: cannot be written\n", stderr);
+    return 1;
+}
+
 }  // namespace
 
 int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words) {
@@ -46,17 +53,15 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
     try {
         std::reverse(words.begin(), words.end());  // CLI11 takes them last first
         app.parse(words);
-        if (std::fflush(stdout) != 0 || std::ferror(stdout))
-            throw RunError("standard output: cannot be written");
-        return status;
+        return after_output(status);
     } catch (const CLI::CallForHelp& error) {
-        if (!app.get_subcommands().empty() || app.remaining().empty()) return app.exit(error);
+        if (!app.get_subcommands().empty() || app.remaining().empty()) return after_output(app.exit(error));
         // `puckloop snapshott --help`: help on what there is not
         const CLI::ExtrasError unknown("puckloop", app.remaining());
         std::fprintf(stderr, "puckloop: %s\n", usage_error(app, unknown).c_str());
         return 2;
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        if (error.get_exit_code() == 0) return after_output(app.exit(error));  // --version
         std::fprintf(stderr, "puckloop: %s\n", usage_error(app, error).c_str());
         return 2;
     } catch (const InputError& error) {
