@@ -7,8 +7,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <sstream>
@@ -174,6 +178,19 @@ TEST_CASE("traces, watches and statistics of a dsPIC without symbols") {
         CHECK_THAT(nowhere.err,
                    Catch::Contains("/nowhere/file: cannot be written: No such file or directory"));
     }
+    // A disk that is full leaves nothing. Here a limit stands in for its end.
+    rlimit limit{};
+    REQUIRE(getrlimit(RLIMIT_FSIZE, &limit) == 0);
+    const rlimit little{1 << 20, limit.rlim_max};  // room for the memory of the chip
+    std::signal(SIGXFSZ, SIG_IGN);
+    REQUIRE(setrlimit(RLIMIT_FSIZE, &little) == 0);
+    const std::string part = bench.folder + "/part.tsv";
+    const auto full = bench.run(what + "--cycles 100000 --trace " + part);
+    REQUIRE(setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    CHECK(full.status == 1);
+    CHECK(exec::one_line(full.err));
+    CHECK_THAT(full.err, Contains("part.tsv: cannot be written"));
+    CHECK_FALSE(std::filesystem::exists(part));
 }
 
 TEST_CASE("profile and coverage of a C program with interrupts") {

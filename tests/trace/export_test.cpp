@@ -137,6 +137,28 @@ TEST_CASE("files that are no traces are refused in one line, whatever is asked o
         }
 }
 
+TEST_CASE("a disk that is full leaves no part of a file") {
+    std::vector<TraceRow> rows;
+    for (int i = 1; i <= 2000; ++i)
+        rows.push_back(
+            uart_row("wire", "left", {i * kMillisecond, kSecond / 9600, static_cast<std::uint8_t>(i)}));
+    const std::string trace = write_trace("full.csv", rows);
+    for (const char* format : {"csv", "vcd", "pcapng", "sr"}) {
+        const std::string folder = scratch(std::string("full_") + format), file = folder + "/x";
+        std::filesystem::create_directories(folder);
+        // Where a limit stands in for the disk's end.
+        const Called called =
+            shell(fmt::format("trap '' XFSZ; ulimit -f 1; {} trace export {} --format {} -o {} 2>&1",
+                              PUCKLOOP_PROGRAM, trace, format, file));
+        INFO(format << "\n" << called.out);
+        CHECK(called.status == 1);
+        CHECK(lines_of(called.out).size() == 1);
+        CHECK_THAT(called.out, Catch::StartsWith("puckloop: " + file + ": cannot write: ") &&
+                                   Catch::Contains("File too large"));
+        CHECK(std::filesystem::is_empty(folder));
+    }
+}
+
 TEST_CASE("what cannot be exported is reported in one line") {
     const std::string trace = write_trace("bad.csv", some_rows());
     const auto fails = [](const std::string& arguments, int status, const std::string& text) {

@@ -1,6 +1,7 @@
 #include "tools/debug/instruction_trace.h"
 
 #include "base/error.h"
+#include "base/partial_file.h"
 
 #include <fmt/format.h>
 
@@ -99,8 +100,9 @@ void InstructionTrace::finish() {
     complete();
     if (!out_) return;
     const bool bad = std::ferror(out_) != 0;
-    if (std::fclose(std::exchange(out_, nullptr)) != 0 || bad)
-        throw RunError(file_ + ": cannot be written to the end");
+    if (std::fclose(std::exchange(out_, nullptr)) == 0 && !bad) return;
+    remove_partial(file_);
+    throw RunError(file_ + ": cannot be written to the end");
 }
 
 }  // namespace puckloop::debug

@@ -38,7 +38,8 @@ class InstructionTrace final : public chip::Instrument {
     void interrupt(int vector, std::uint32_t pc, std::uint64_t cycle) override;
     void reset(std::uint64_t cycle) override;
     void access(std::uint16_t address, int bytes, bool write) override;
-    /// The run is over: the last instruction is written. Throws RunError: the disk is full.
+    /// The run is over: the last instruction is written. Throws RunError: the disk is full;
+    /// the file is gone then.
     void finish();
 
   private:

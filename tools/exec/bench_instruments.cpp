@@ -1,6 +1,7 @@
 #include "tools/exec/bench_instruments.h"
 
 #include "base/error.h"
+#include "base/partial_file.h"
 #include "emu/image/line_table.h"
 #include "emu/image/symbol_sizes.h"
 
@@ -50,9 +51,10 @@ void check_place(const std::string& path) {
 void write_file(const std::string& path, const std::string& text) {
     std::ofstream out(path, std::ios::binary);
     out << text;
-    if (!out.flush())
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", path, std::strerror(errno != 0 ? errno : EIO)));
+    if (out.flush()) return;
+    const int reason = errno;
+    remove_partial(path);
+    throw RunError(fmt::format("{}: cannot be written: {}", path, std::strerror(reason != 0 ? reason : EIO)));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "tools/trace/recorded_trace.h"
 
 #include "base/error.h"
+#include "base/partial_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -120,14 +121,22 @@ void check_output_file(const std::string& path) {
 }
 
 void write_output(const std::string& path, const std::function<void(std::ostream&)>& write) {
-    std::ofstream file;
+    const auto write_to = [&](std::ostream& out) {
+        if (out) write(out);
+        out.flush();
+        if (!out)
+            throw RunError(
+                fmt::format("{}: cannot write: {}", path, std::strerror(errno != 0 ? errno : EIO)));
+    };
     errno = 0;
-    if (path != "-") file.open(path, std::ios::binary);
-    std::ostream& out = path == "-" ? std::cout : file;
-    if (out) write(out);
-    out.flush();
-    if (!out)
-        throw RunError(fmt::format("{}: cannot write: {}", path, std::strerror(errno != 0 ? errno : EIO)));
+    if (path == "-") return write_to(std::cout);
+    std::ofstream file(path, std::ios::binary);
+    try {
+        write_to(file);
+    } catch (...) {
+        remove_partial(path);
+        throw;
+    }
 }
 
 }  // namespace puckloop::tools

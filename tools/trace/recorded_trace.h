@@ -72,7 +72,7 @@ class RecordedTrace {
 void check_output_file(const std::string& path);
 
 /// Calls `write` with the open file, "-" being the standard output. Throws RunError when it cannot be
-/// written.
+/// written; what was written of it then goes, whatever `write` throws.
 void write_output(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace puckloop::tools
