@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <sstream>
+
 using namespace puckloop::tests;
 using Catch::Contains;
 
@@ -36,6 +39,45 @@ TEST_CASE("standard output that takes nothing is one line and a status") {
         INFO(words.back());
         check_one_line(Process(all, bench.folder()).wait(), 1, {"standard output: cannot "});
     }
+}
+
+TEST_CASE("the list of parameters has the values in force with a scenario and an overlay") {
+    const Workbench bench;
+    const auto rows = [&](Words words, const std::string& parameter) {
+        words.insert(words.begin(), {"run", "--list-parameters"});
+        const Ended ended = bench.puckloop(words);
+        INFO(ended.err);
+        CHECK(ended.status == 0);
+        std::string found;
+        std::istringstream lines(ended.out);
+        for (std::string line, name; std::getline(lines, line);) {
+            std::istringstream(line) >> name;
+            if (name != parameter) continue;
+            line.erase(
+                std::unique(line.begin(), line.end(), [](char a, char b) { return a == ' ' && b == ' '; }),
+                line.end());
+            found += line + "|";
+        }
+        return found;
+    };
+    const std::string scenario = bench.hello(
+        "[[robot]]\nname = \"two\"\nposition = [\"30 cm\", \"30 cm\"]\n[robot.pic]\nfirmware = \"" + kImage +
+        "\"\n[parameters]\nrobot.axle_length = \"54 mm\"\n");
+    const std::string overlay = bench.file(
+        "overlay.toml", "[parameters]\nproximity.gain3 = 1.5\nworld.gravity = 9.7\n[[robot]]\nname = "
+                        "\"two\"\nparameters = { \"robot.axle_length\" = \"52 mm\" }\n");
+    CHECK_THAT(rows({}, "robot.axle_length"), Catch::StartsWith("robot.axle_length m 0.053 0.0"));
+    CHECK_THAT(rows({scenario}, "robot.axle_length"),
+               Catch::StartsWith("robot.axle_length m 0.053 0.054 0.0"));
+    CHECK_THAT(rows({scenario, "--model", overlay}, "robot.axle_length"),
+               Catch::StartsWith("robot.axle_length m 0.053 0.054 0.0") &&
+                   Catch::EndsWith("|robot.axle_length m 0.052 of two|"));
+    CHECK_THAT(rows({scenario, "--model", overlay}, "proximity.gain0..7"),
+               Catch::StartsWith("proximity.gain0..7 1 1 1 1 1 1.5 1 1 1 1 0"));
+    CHECK_THAT(rows({scenario, "--model", overlay}, "world.gravity"), Contains(" 9.81 9.7 "));
+    check_one_line(bench.puckloop({"run", "--list-parameters", "--model", overlay}), 2,
+                   {"--model", "no scenario"});
+    check_one_line(bench.puckloop({"run", "--list-parameters", "nowhere.toml"}), 2, {"nowhere.toml"});
 }
 
 TEST_CASE("exec runs an image on the bench and reports it") {

@@ -9,6 +9,7 @@
 #include "tools/cli/log_options.h"
 #include "tools/commands.h"
 #include "tools/run/node_process.h"
+#include "tools/run/overrides.h"
 #include "tools/run/parameter_list.h"
 #include "tools/run/report.h"
 #include "tools/run/run_scenario.h"
@@ -75,12 +76,26 @@ void export_trace(const std::filesystem::path& out, const std::vector<std::strin
     }
 }
 
-int run(Options& options) {
-    RunRequest& request = options.request;
-    if (options.list_parameters) {
-        print_parameters();
+/// The defaults, or with a scenario the values in force.
+int list_parameters(const RunRequest& request) {
+    if (!request.from.empty())
+        throw InputError("", "--list-parameters", "does not go with --from", "the snapshot's scenario");
+    if (request.scenario.empty()) {
+        if (!request.overlay.empty())
+            throw InputError("", "--model", "no scenario is given whose values it changes",
+                             "a scenario beside it");
+        print_parameters(nullptr);
         return 0;
     }
+    scenarios::Scenario scenario = scenarios::read_scenario(request.scenario);
+    apply(request, scenario);
+    print_parameters(&scenario.world);
+    return 0;
+}
+
+int run(Options& options) {
+    RunRequest& request = options.request;
+    if (options.list_parameters) return list_parameters(request);
     if (request.scenario.empty() && request.from.empty())
         throw InputError("", "run", "no scenario given", "a file such as scenarios/hello.toml");
     if (!options.linux_program.empty()) {
@@ -262,8 +277,10 @@ void declare_run(Command& app, int& status) {
         ->type_name("FILE");
     command->add_flag("--no-cache", options->no_cache,
                       "execute every board's boot, and keep none in the cache (docs/scenario.md)");
-    command->add_flag("--list-parameters", options->list_parameters,
-                      "print every physical parameter with its default, its range and where they come from");
+    command->add_flag(
+        "--list-parameters", options->list_parameters,
+        "print every physical parameter with its default, its range and where they come from; with "
+        "a scenario, and --model, also the value in force");
     command->add_flag("--json", options->json, "print only the path of report.json");
     declare_log_options(*command, options->log);
     command->callback([options, &status] { status = run(*options); });
