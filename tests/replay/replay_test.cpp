@@ -196,10 +196,37 @@ TEST_CASE("a record without the wanted rows is refused, and the trace does not c
         CHECK_THAT(called.out, Catch::StartsWith("puckloop: ") && Catch::Contains(text));
     };
     fails(scenario("rab_pair") + " " + out + " --node nobody", "one of world");
-    fails(scenario("tam") + " " + out + " --node tam0.avr", "holds no message of tam0.avr");
+    const std::string pair = scenario("rab_pair"), tam = scenario("tam");
+    fails(tam + " " + out + " --node tam0.avr", fmt::format("is of a run of {}, not of {}", pair, tam));
+    fails(pair + " " + out + " --node leader.pic --seed 77",
+          "is of a run with seed 1, and this replay has seed 77 (expected --seed 1)");
+    // A run that was killed left no report to compare with.
+    std::filesystem::remove(out + "/report.json");
+    fails(tam + " " + out + " --node tam0.avr", "holds no message of tam0.avr");
     fails(scenario("rab_pair") + " /tmp --node leader.pic", "record.csv");
     std::ofstream(out + "/record.csv", std::ios::app) << "rubbish\n";
     fails(scenario("rab_pair") + " " + out + " --node leader.pic", fmt::format("line {}", all.size() + 1));
+}
+
+TEST_CASE("the scenario of a record may be a copy, or have changed in its place") {
+    const auto folder = tests::scratch_path("puckloop_replay");
+    std::filesystem::create_directories(folder);
+    const std::string first = folder / "first.toml", copy = folder / "copy.toml", out = folder / "of_first";
+    std::string text;
+    for (std::string line : lines_of(scenario("hello"))) {
+        if (const auto at = line.find("../firmware"); at != std::string::npos)
+            line.replace(at, 2, PUCKLOOP_SOURCE);
+        text += line + "\n";
+    }
+    std::ofstream(first) << text;
+    std::ofstream(copy) << text;
+    REQUIRE(call(fmt::format("run {} --duration 0.3 --record --out {}", first, out)).status == 0);
+    const std::string rest = " " + out + " --node robot0.pic";
+    CHECK(call("replay " + copy + rest).status == 0);
+    for (const std::string& file : {first, copy})
+        std::ofstream(file, std::ios::app) << "# more\n";
+    CHECK(call("replay " + first + rest).status == 0);
+    CHECK(call("replay " + copy + rest).status == 2);
 }
 
 TEST_CASE("a damaged record is refused in one line, or differs, and brings nothing down") {

@@ -71,10 +71,34 @@ TraceSelection lines_of(const Options& options, const RunSetup& setup, const Rep
     return selection;
 }
 
-/// A time of the run's report, in seconds; nothing if there is none.
-std::optional<cosim::Time> reported(const std::filesystem::path& folder, const char* key) {
+/// The run's report; no object if it left none.
+nlohmann::json report_of(const std::filesystem::path& folder) {
     std::ifstream in(folder / "report.json");
-    const auto report = nlohmann::json::parse(in, nullptr, false);
+    return nlohmann::json::parse(in, nullptr, false);
+}
+
+/// That the record is of a run of this scenario, by content or by place, with this seed. A run that was
+/// killed left no report, and one of an older build none with the scenario's content: they are not compared.
+void check_origin(const nlohmann::json& report, const std::filesystem::path& record, const RunSetup& setup) {
+    if (!report.is_object()) return;
+    const auto field = [&](const char* key) { return report.value(key, nlohmann::json()); };
+    const nlohmann::json content = field("scenario_sha256"), file = field("scenario"), seed = field("seed");
+    std::error_code gone;
+    if (content.is_string() && content != setup.scenario_sha256 && file.is_string() &&
+        !std::filesystem::equivalent(file.get<std::string>(), setup.scenario.file, gone))
+        throw InputError(record.string(), "",
+                         fmt::format("is of a run of {}, not of {}", file.get<std::string>(),
+                                     setup.scenario.file.string()),
+                         "the scenario of that run");
+    if (seed.is_number_unsigned() && seed != setup.scenario.seed)
+        throw InputError(record.string(), "",
+                         fmt::format("is of a run with seed {}, and this replay has seed {}", seed.dump(),
+                                     setup.scenario.seed),
+                         fmt::format("--seed {}", seed.dump()));
+}
+
+/// A time of the run's report, in seconds; nothing if there is none.
+std::optional<cosim::Time> reported(const nlohmann::json& report, const char* key) {
     if (!report.is_object()) return std::nullopt;
     const auto found = report.find(key);
     if (found == report.end() || !found->is_number()) return std::nullopt;
@@ -108,6 +132,8 @@ int run(Options& options) {
     const RecordedTrace record(file, selection);
     if (request.out.empty()) request.out = std::filesystem::path(options.folder) / "replay";
     const RunSetup setup = set_up(request);
+    const nlohmann::json report = report_of(options.folder);
+    check_origin(report, file, setup);
     const cosim::NodeSpec& spec = find_node(setup, options.node);
     std::filesystem::create_directories(setup.out);
     make_work_folders(setup);
@@ -126,9 +152,9 @@ int run(Options& options) {
         looks.look = [&](cosim::Time now) { watch->sample(now); };
     }
     ReplayOptions how;
-    how.wind_up = reported(options.folder, "programs_asked_to_end_s");
+    how.wind_up = reported(report, "programs_asked_to_end_s");
     how.watch = watch ? &looks : nullptr;
-    how.end = reported(options.folder, "simulated_s").value_or(cosim::kNever);
+    how.end = reported(report, "simulated_s").value_or(cosim::kNever);
     for (const cosim::FaultSpec& fault : setup.scenario.faults)
         how.links_with_faults.insert(fault.link);
     const ReplayResult result = replay(*node, setup.links, record, how);

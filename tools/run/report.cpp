@@ -137,6 +137,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                             {"from_a", ordered_json::parse(to_json(link.from_a))},
                             {"from_b", ordered_json::parse(to_json(link.from_b))}};
     ordered_json report{{"scenario", setup.scenario.file.string()},
+                        {"scenario_sha256", setup.scenario_sha256},
                         {"seed", setup.scenario.seed},
                         {"success", outcome.success},
                         {"ended_by", reason_name(outcome.reason)},

@@ -2,6 +2,7 @@
 #include "tools/run/fault_results.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "emu/camera/model.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/board.h"
@@ -229,6 +230,9 @@ void debug_board(RunSetup& setup, const std::string& assignment) {
 RunSetup set_up(const RunRequest& request) {
     RunSetup setup;
     setup.scenario = scenarios::read_scenario(request.scenario);
+    std::error_code none;
+    if (std::filesystem::is_regular_file(request.scenario, none))
+        setup.scenario_sha256 = sha256_of_file(request.scenario);
     Scenario& scenario = setup.scenario;
     apply(request, scenario);
     scenarios::check_ending(scenario);

@@ -13,6 +13,7 @@ namespace puckloop::tools {
 
 struct RunSetup {
     scenarios::Scenario scenario;
+    std::string scenario_sha256{};  ///< of its file, as it was read
     std::filesystem::path out;
     std::vector<cosim::NodeSpec> nodes;
     std::vector<cosim::LinkSpec> links;
