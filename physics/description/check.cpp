@@ -160,7 +160,21 @@ class Checker {
     void solid(const std::string& what, const Thing& thing, const Shape& shape) {
         range(what, thing.place, "reflectivity", thing.reflectivity, 0.0, kMostReflective);
         if (thing.movable) range(what, thing.place, "mass", thing.mass, 1e-3, 100.0);
+        if (!thing.movable && !reaches_arena(shape))
+            fail(what, thing.place, fmt::format("({} m, {} m) is outside the arena", shape.x, shape.y));
         (thing.movable ? moving_ : fixed_).push_back({what, thing.place, shape});
+    }
+    /// A convex shape that no edge meets is inside or outside as a whole.
+    bool reaches_arena(const Shape& shape) const {
+        const auto& corners = world_.arena.corners;
+        if (inside(corners, shape.x, shape.y)) return true;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Point &from = corners[i], &to = corners[(i + 1) % corners.size()];
+            const double length = std::hypot(to.x - from.x, to.y - from.y);
+            const auto met = chord(shape, from.x, from.y, (to.x - from.x) / length, (to.y - from.y) / length);
+            if (met && met->out >= 0.0 && met->in <= length) return true;
+        }
+        return false;
     }
     void check_lamp(const Lamp& l) {
         const auto what = named("lamp", l.name, l.place);

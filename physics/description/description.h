@@ -151,7 +151,7 @@ struct World {
     Recording recording;
 };
 
-/// Throws InputError naming the element and its place: sizes, names, overlaps, robots outside the arena,
+/// Throws InputError naming the element and its place: sizes, names, overlaps, what is outside the arena,
 /// unknown parameters, values out of range.
 void check(const World& world);
 

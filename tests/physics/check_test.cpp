@@ -62,6 +62,32 @@ TEST_CASE("a good world is accepted, a bad one refused by name and place") {
     CHECK_THAT(refusal([](World& w) { w.recording.period = 0.0005; }), Contains("period"));
 }
 
+TEST_CASE("a fixed thing that no part of the arena reaches is refused, one that reaches into it is not") {
+    const auto box = [](double x, double y, double heading, double length, double width) {
+        return refusal([=](World& w) {
+            Box other{.name = "other"};
+            other.x = x;
+            other.y = y;
+            other.heading = heading;
+            other.length = length;
+            other.width = width;
+            w.boxes.push_back(other);
+        });
+    };
+    const auto cylinder = [](double x, double y, double radius) {
+        return refusal(
+            [=](World& w) { w.cylinders.push_back({.name = "can", .x = x, .y = y, .radius = radius}); });
+    };
+    // The arena is 2 m by 2 m about the origin.
+    CHECK_THAT(box(3, 0, 0, 0.1, 0.1), Contains("box 'other': (3 m, 0 m) is outside the arena"));
+    CHECK_THAT(box(1.2, 1.2, 0.785, 0.1, 0.5), Contains("outside the arena"));
+    CHECK(box(1.2, 1.2, 0.785, 0.6, 0.1) == "accepted");  // its corner is within
+    CHECK(box(1.2, 0.8, 0, 0.5, 0.1) == "accepted");      // its end
+    CHECK(box(0, 1.1, 0, 4, 0.3) == "accepted");          // its side, beyond both corners
+    CHECK_THAT(cylinder(0, -1.3, 0.25), Contains("cylinder 'can'") && Contains("outside the arena"));
+    CHECK(cylinder(0, -1.3, 0.35) == "accepted");
+}
+
 TEST_CASE("parameters: unknown names, ranges, and what a robot may override") {
     CHECK_THAT(refusal([](World& w) { w.parameters["robot.axle_lenght"] = 0.05; }),
                Contains("did you mean \"robot.axle_length\""));
