@@ -251,6 +251,31 @@ TEST_CASE("a run under a debugger is the run without one") {
     CHECK(numbers(server.out()) == numbers(report));
 }
 
+TEST_CASE("a debugger that leaves without a word is reported, and another one finds the program running") {
+    const Workbench bench;
+    std::mt19937 random(Catch::rngSeed() + 5);
+    const Lamp lamp(bench, random);
+    GdbServer server(bench.folder, "--mcu dspic30f6014a " + lamp.image);
+    const std::string line = fmt::format(
+        "gdb: the debugger at {} has left; the program runs on, and another may connect\n", server.socket());
+    {
+        GdbClient gdb(server.socket());  // as GDB itself does, which does not know the chip
+        CHECK_THAT(gdb.ask("qXfer:features:read:target.xml:0,1000"), Contains("<target"));
+    }
+    {
+        GdbClient gdb(server.socket());
+        CHECK(gdb.ask("?") == "T02");  // stopped for it: it was running
+        CHECK_THAT(server.err(), Catch::EndsWith(line));
+        CHECK(gdb.ask("D") == "OK");  // one that detaches is not
+    }
+    GdbClient gdb(server.socket());
+    CHECK(gdb.ask("?") == "T02");
+    gdb.send("k");
+    CHECK(server.wait() == 1);
+    const std::string err = server.err();
+    CHECK(err.find(line) == err.rfind(line));
+}
+
 TEST_CASE("places where nobody can listen") {
     const Workbench bench;
     std::mt19937 random(4);

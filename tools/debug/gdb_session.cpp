@@ -46,7 +46,11 @@ void GdbSession::stand(const Stop& stop) {
 }
 
 std::optional<Resume> GdbSession::attend(bool wait) {
-    if (!socket_.connected()) return Resume::Detach;
+    if (!socket_.connected()) {
+        fmt::print(stderr, "gdb: the debugger at {} has left; the program runs on, and another may connect\n",
+                   socket_.address());
+        return Resume::Detach;
+    }
     reader_.feed(socket_.read(wait, gives_up_));
     if (gives_up_ && gives_up_()) return Resume::Kill;
     while (const std::optional<RspEvent> event = resume_ ? std::nullopt : reader_.next()) {

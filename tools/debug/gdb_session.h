@@ -23,7 +23,8 @@ class GdbSession {
         : socket_(socket), debuggee_(debuggee), gives_up_(std::move(gives_up)) {}
 
     /// The program stands still: reports it, if the debugger waits for that, and answers until it is to go
-    /// on. A debugger that has left is one that detaches.
+    /// on. A debugger that has left is one that detaches,
+    /// which a line on standard error reports.
     Resume serve(const Stop& stop);
     /// The same in parts, for whoever has several debuggers. The program stands still from here on.
     void stand(const Stop& stop);
