@@ -4,7 +4,7 @@
 // a checkpoint was taken of can go back to it.
 //
 // What can be copied byte for byte (numbers, pointers, plain structs) is copied whole, whatever its list
-// says; an object with references or containers goes through its list.
+// states; an object with references or containers goes through its list.
 
 #include "base/archive.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What puckloop says of its own work on the host: processes, files, timings. Logs in simulated time are
+// What puckloop reports of its own work on the host: processes, files, timings. Logs in simulated time are
 // base/node_log.h. One line an entry, from any process or thread, whole:
 //   2026-03-01 09:30:00.123 info    [robot0.pic 4711] firmware epuck.hex: 21034 words
 // Nothing is said unless the user asks (-v, --log-level, --log-file).

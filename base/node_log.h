@@ -39,7 +39,7 @@ class NodeLog {
     std::string kept_back_;
 };
 
-/// Is the `count`th event of its kind told? 1, 2, 4, 8, ...: what goes on for ever stays readable.
+/// Is the `count`th event of its kind reported? 1, 2, 4, 8, ...: what goes on for ever stays readable.
 constexpr bool is_milestone(std::uint64_t count) {
     return std::has_single_bit(count);
 }

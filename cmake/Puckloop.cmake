@@ -53,7 +53,7 @@ function(puckloop_test name)
   target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
   target_compile_options(${name} PRIVATE ${PUCKLOOP_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM puckloop_test_precompiled)
-  # A test that lacks what it needs (real images, a tool) says "skipped: reason" or "reason: skipped", and CTest counts it
+  # A test that lacks what it needs (real images, a tool) prints "skipped: reason" or "reason: skipped", and CTest counts it
   # so. The bare word is not enough: it occurs in names of tests and in results, and would hide their failures.
   set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: |: +skipped|:. +skipped")
   if(ARG_ALONE)

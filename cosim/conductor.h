@@ -22,7 +22,7 @@ struct RunSnapshot;  // cosim/resume/run_snapshot.h
 struct NodeSpec {
     std::string name;  ///< unique in the run: "robot0.pic"
     std::string json;  ///< what the factory makes the node from
-    /// Where this node lives, if not as the run's option says.
+    /// Where this node lives, if not as the run's option states.
     std::optional<bool> in_process{};
     /// Any thread may advance it: it has nothing to do with processes, signals or other nodes' state.
     bool any_thread = false;
@@ -73,7 +73,7 @@ struct RunOptions {
 enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed, TakenBack };
 
 /// Thrown out of the advance() of a node in the conductor's process: the run is given up as it stands, for
-/// its owner to begin it again from a snapshot. Nodes are not finished, and the outcome says
+/// its owner to begin it again from a snapshot. Nodes are not finished, and the outcome states
 /// EndReason::TakenBack and nothing else.
 struct TakenBack {};
 
@@ -109,7 +109,7 @@ struct Outcome {
 
 /// Runs nodes to the end. Nodes are made by the constructor, which throws InputError for anything that does
 /// not fit together and RunError when a node process cannot be started. run() never throws for what happens
-/// during the run: a node that dies, stalls or lies, or a sink that fails, is told in the outcome, after
+/// during the run: a node that dies, stalls or lies, or a sink that fails, is reported in the outcome, after
 /// everything recorded was flushed and the other nodes had their chance to finish.
 class Conductor {
   public:

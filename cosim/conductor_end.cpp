@@ -1,4 +1,4 @@
-// How a run ends: a node's wish, a deadlock, a failure; and what is told of it.
+// How a run ends: a node's wish, a deadlock, a failure; and what is reported of it.
 
 #include "base/error.h"
 #include "cosim/conductor_state.h"

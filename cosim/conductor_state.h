@@ -2,7 +2,7 @@
 // The conductor's state and the loop over it; private to its source files: conductor.cpp (the loop),
 // conductor_grants.cpp (what is granted, what is replied), conductor_work.cpp (who does the work),
 // conductor_trace.cpp (what becomes of the trace), conductor_snapshot.cpp (a run saved, and gone on with),
-// conductor_end.cpp (how a run ends, what is told of it).
+// conductor_end.cpp (how a run ends, what is reported of it).
 
 #include "base/random.h"
 #include "cosim/conductor.h"

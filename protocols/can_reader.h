@@ -16,7 +16,7 @@ enum class CanError : std::uint8_t {
     Stuff,        ///< six equal bits in a row
     Form,         ///< a dominant bit where the format has a recessive one
     Acknowledge,  ///< nobody took the frame
-    Crc           ///< the check sequence is another one; told at the acknowledge delimiter
+    Crc           ///< the check sequence is another one; reported at the acknowledge delimiter
 };
 /// "bit", "stuff", ...; empty for None.
 std::string_view can_error_name(CanError error);

@@ -76,7 +76,7 @@ EpuckActuators decode_actuators(std::span<const std::uint8_t, kEpuckActuatorByte
 EpuckSensors decode_sensors(std::span<const std::uint8_t, kEpuckSensorBytes> bytes);
 
 /// Why a sensor record cannot be what a PIC sent (a field out of its range), or empty. The record carries no
-/// check, so this and its length are all that tells a shifted or garbled record from a good one.
+/// check, so this and its length are all that distinguishes a shifted or garbled record from a good one.
 std::string_view why_implausible(const EpuckSensors& sensors);
 
 }  // namespace puckloop::protocols

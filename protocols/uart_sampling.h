@@ -31,7 +31,7 @@ struct ReceivedCharacter {
 int bits_before_stop(const cosim::UartFrame& frame);
 
 /// True where the frame leaves the line at mark. The line is idle before it; after it too, but where the
-/// frame says that it rests low.
+/// frame states that it rests low.
 bool line_is_mark(const cosim::UartFrame& frame, cosim::Time time);
 
 /// The next instant after `time` at which the level may be another: the frame's start, bit boundaries, edges

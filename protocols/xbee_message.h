@@ -1,5 +1,5 @@
 #pragma once
-// What the data of an XBee API frame says, one struct per frame type; numbers are big-endian.
+// What the data of an XBee API frame holds, one struct per frame type; numbers are big-endian.
 // Sources: TAM fact sheet, section 6; XBee/XBee-PRO DigiMesh 2.4 manual (90000991), "API frame
 // specifications".
 

@@ -67,7 +67,7 @@ void apply_linux(const std::string& file, const TomlValue& table, Scenario& scen
     reader.finish();
 }
 
-/// [clock]: the main boards' crystals run by so much faster than the scenario says.
+/// [clock]: the main boards' crystals run by so much faster than the scenario states.
 void apply_clock(const std::string& file, const TomlValue& table, Scenario& scenario) {
     Reader reader(file, "clock", table);
     const double error = reader.quantity("pic_error", Dimension::Ratio, 0.0) * 1e6;

@@ -14,7 +14,7 @@ namespace puckloop::scenarios {
 
 namespace {
 
-// Digi's block of addresses; the lower half tells modules apart.
+// Digi's block of addresses; the lower half distinguishes modules.
 constexpr std::uint64_t kDigi = 0x0013A20000000000, kCoordinatorLow = 0x40000000;
 constexpr std::int64_t kFirstNetwork = 0x01B2;  // TAM fact sheet, section 6
 constexpr int kNetworks = 4;

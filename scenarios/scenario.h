@@ -83,7 +83,7 @@ struct LinuxCamera {
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
     std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
-    std::string hostname;              ///< what gethostname() says
+    std::string hostname;              ///< what gethostname() gives
     double start = 0.0;                ///< s: when the program is started
     std::vector<double> restarts;      ///< s: killed and started again
     std::vector<LinuxSignal> signals;

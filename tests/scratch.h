@@ -28,7 +28,7 @@ class ScratchPaths {
     std::vector<std::filesystem::path> paths_;
 };
 
-/// Not made yet; CTest runs every case in a process of its own, so the process number tells cases apart.
+/// Not made yet; CTest runs every case in a process of its own, so the process number distinguishes cases.
 inline std::filesystem::path scratch_path(const std::string& name) {
     static ScratchPaths paths;
     auto path = std::filesystem::temp_directory_path() / (name + "." + std::to_string(::getpid()));

@@ -2,14 +2,14 @@
 // A CAN bus as a node: a port for each controller. The bus is bit by bit (can_wire.h, can_station.h); what
 // crosses links is what a controller wants and what became of it (CanMessage, cosim/core/message.h).
 //
-// A controller says Join when its program has it on the bus, with how it cuts time, and Offer when it has a
-// frame; the bus sends that as soon as it is idle, again and again until it has gone or the controller says
+// A controller sends Join when its program has it on the bus, with how it cuts time, and Offer when it has a
+// frame; the bus sends that as soon as it is idle, again and again until it has gone or the controller sends
 // Withdraw. News come when a frame or an error frame is over, with both error counters. Nothing that comes in
 // has an answer within 14 bits, those of the shortest error frame behind a start of frame; at 1 Mbit/s, CAN's
-// highest rate, that is the bus's lookahead. A controller that is set faster is told as much later.
+// highest rate, that is the bus's lookahead. A controller that is set faster is informed as much later.
 //
 // Deviations
-//  1. Error counters, TXLARB and TXERR are told when the error frame, or the frame that won, is over; a
+//  1. Error counters, TXLARB and TXERR are reported when the error frame, or the frame that won, is over; a
 //     withdrawal is answered and a sleeping controller woken after 14 us.
 //  2. A controller that its program switches off or resets within a frame takes part to the end of it.
 //  3. A second reason to delay the next frame within one intermission is not limited to two overload frames.
@@ -69,7 +69,7 @@ class CanBusNode final : public Node {
     void take_edge(Time now, Time quiet);
     void watch_state(std::size_t index, Time time);
     void write(Time time, const std::string& text) { log_.line(to_seconds(time), text); }
-    /// How much later than others a controller is told that cuts bits shorter than the fastest.
+    /// How much later than others a controller is informed that cuts bits shorter than the fastest.
     static Time lag(const CanTiming& timing);
     std::vector<std::string> warnings() const;
 

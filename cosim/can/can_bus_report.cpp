@@ -1,4 +1,4 @@
-// What a CAN bus says of itself: its controllers' states in the log, counters and warnings.
+// What a CAN bus reports of itself: its controllers' states in the log, counters and warnings.
 
 #include "base/error.h"
 #include "base/times_text.h"

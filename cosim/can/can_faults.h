@@ -37,7 +37,7 @@ class CanFaults {
     /// `sender` has the bus to itself with a frame that began at `start`.
     std::vector<CanFlip> strike(std::size_t sender, const protocols::CanFrame& frame,
                                 const protocols::CanBits& bits, Time start);
-    /// `receiver` took the frame, and its program is not told.
+    /// `receiver` took the frame, and its program is not informed.
     bool drops(std::size_t sender, std::size_t receiver, const protocols::CanFrame& frame, Time start);
 
     const std::vector<CarriedFault>& carried() const { return carried_; }

@@ -2,7 +2,7 @@
 // One controller on a CAN bus, bit by bit: its bit clock, what it drives, what it makes of what it samples,
 // and its error counters. Source: Bosch CAN specification 2.0, parts A and B (sections named as there).
 //
-// A station knows no other: the wire (can_wire.h) asks when something happens next, tells of falling edges
+// A station knows no other: the wire (can_wire.h) asks when something happens next, reports falling edges
 // and hands in the level at each sample.
 //
 // Deviations

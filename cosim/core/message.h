@@ -95,7 +95,7 @@ struct RadioFrame {
 /// Longest PHY payload, 802.15.4 aMaxPHYPacketSize.
 inline constexpr std::size_t kMostRadioOctets = 127;
 
-/// What a CAN controller and its bus tell each other. The bus (cosim/can/can_bus.h) is bit by bit: it carries
+/// What a CAN controller and its bus send each other. The bus (cosim/can/can_bus.h) is bit by bit: it carries
 /// out arbitration, acknowledgement, error frames and error counters; what crosses a link is what a
 /// controller wants and what became of it.
 enum class CanKind : std::uint8_t {

@@ -71,7 +71,7 @@ class Suspendable {
 ///
 /// UART ports: the link adds the 9 nominal bit times by itself. A frame that is not yet begun when advance()
 /// returns begins at `until` or later, so EOT `until` and lookahead 0 are good enough for a UART. A node
-/// that hands a frame out when its stop bit begins says through begun(p) that one is being shifted out, and
+/// that hands a frame out when its stop bit begins states through begun(p) that one is being shifted out, and
 /// since when; its EOT is then that stop bit. (A node may as well hand a frame out as soon as it begins,
 /// stamped with its stop bit, and leave begun() alone.)
 class Node {

@@ -16,7 +16,7 @@ namespace puckloop::cosim {
 struct Firing {
     Time time = 0;  ///< the frame's start, or when it happened
     std::uint64_t index =
-        0;               ///< of the frame among those sent in its direction, from 0; of a node: as it says
+        0;               ///< of the frame among those sent in its direction, from 0; of a node: as it states
     std::string from{};  ///< who sent it; for a node's fault empty
     std::string what{};  ///< "0x41" for a byte, ...: one short text without commas
 
@@ -68,7 +68,7 @@ class Evidence {
     std::vector<Kept> foreseen_;
 };
 
-/// What a run says of one fault.
+/// What a run reports of one fault.
 struct FaultReport {
     std::string name;
     std::string text;  ///< "drop on robot0.uart from robot0.pic"

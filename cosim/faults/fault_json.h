@@ -18,7 +18,7 @@ struct CarriedFault {
     Trigger trigger;
     Evidence evidence{};
 
-    /// Counts and tells what happened to what at `time`.
+    /// Counts and reports what happened to what at `time`.
     void fired(Time time, std::uint64_t index, std::string what) {
         evidence.fire({time, index, {}, std::move(what)}, time);
     }
@@ -34,7 +34,7 @@ nlohmann::ordered_json fault_to_json(const FaultSpec& spec, std::uint64_t seed, 
 std::vector<CarriedFault> faults_from_json(const nlohmann::ordered_json& list);
 
 /// For "faults" in a node's report (Node::finish()): [{"name", "fired", "firings": [...]}, ...]. Nothing that
-/// happened at `end` or later is told.
+/// happened at `end` or later is reported.
 nlohmann::ordered_json fault_results(const std::vector<CarriedFault>& faults, Time end = kNever);
 /// Reads one entry of that list into the fault's report.
 void add_fault_result(FaultReport& report, const nlohmann::ordered_json& result);

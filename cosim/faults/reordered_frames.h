@@ -1,7 +1,7 @@
 #pragma once
 // Faults that make frames late by chance or let them change places, alike for bytes of a line and radio
-// frames. `Base` says what becomes of the frames behind: QueuedFault pushes them back, FrameFault lets them
-// pass.
+// frames. `Base` decides what becomes of the frames behind: QueuedFault pushes them back, FrameFault lets
+// them pass.
 
 #include "cosim/faults/frame_fault.h"
 

@@ -24,7 +24,7 @@ class Trigger {
     bool spent() const { return state_.fired >= count_; }
 
     /// For what happens at instants: the first one at or after `time`, kNever if there is none. It fires if
-    /// fires() says so.
+    /// fires() is true.
     Time instant(Time time) const;
 
     Time begin() const { return begin_; }
@@ -52,8 +52,8 @@ class Trigger {
     RandomStream random_;
 };
 
-/// The random stream of the fault that is number `index` of the run's list. `use` tells several of one fault
-/// apart: a direction of a link.
+/// The random stream of the fault that is number `index` of the run's list. `use` distinguishes several of
+/// one fault apart: a direction of a link.
 RandomStream fault_stream(const FaultSpec& spec, std::uint64_t seed, std::size_t index, int use = 0);
 
 }  // namespace puckloop::cosim

@@ -15,15 +15,15 @@
 // of each other collide: the lower address byte wins, as its first 0 against a 1 does on the wires.
 //
 // Devices that are nodes of their own have a port each. As on the wires, each of them sees every Start (or
-// those for `addresses`, if it has any) and says itself whether it is meant; a device must answer: one that
-// is switched off says ack = 0. Those that acknowledged get what follows: Write, Read and Stop. All this is
-// told half a nominal clock after it began (`start` says when); by then masters have been told apart. Each
-// Start and Write is answered with Acknowledge and each Read with Data, in the device's own time: at
-// `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on one clock
-// later. While such a device is asked the bus's lookahead is one nominal clock. A `prompt` one, which never
-// stretches, is told of each phase late, half a nominal clock before it must answer. The `ack` of a Read is
-// what the master has decided when it begins; a dsPIC decides later and says 1. So a device knows that its
-// byte was the last one wanted when a Stop or Start follows it, not before.
+// those for `addresses`, if it has any) and decides itself whether it is meant; a device must answer: one
+// that is switched off answers ack = 0. Those that acknowledged get what follows: Write, Read and Stop. All
+// this is sent half a nominal clock after it began (`start` states when); by then masters have been
+// distinguished. Each Start and Write is answered with Acknowledge and each Read with Data, in the device's
+// own time: at `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on
+// one clock later. While such a device is asked the bus's lookahead is one nominal clock. A `prompt` one,
+// which never stretches, is informed of each phase late, half a nominal clock before it must answer. The
+// `ack` of a Read is what the master has decided when it begins; a dsPIC decides later and sends 1. So a
+// device knows that its byte was the last one wanted when a Stop or Start follows it, not before.
 //
 // Several devices at one address answer together: SDA is low when any pulls it low, so their acknowledges are
 // or-ed and their bytes and-ed, and the slowest sets the pace.
@@ -33,9 +33,9 @@
 // Linux driver has given it nine clocks and a STOP (i2c_generic_scl_recovery()); a dsPIC only sees a
 // collision.
 //
-// Deviations: 1. a lost arbitration is told when the ninth clock ends, not at the bit. 2. Two masters that
-// send the same address byte do not go on together into the data: the first port wins. 3. SCL of colliding
-// masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
+// Deviations: 1. a lost arbitration is reported when the ninth clock ends, not at the bit. 2. Two masters
+// that send the same address byte do not go on together into the data: the first port wins. 3. SCL of
+// colliding masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
 
 #include "base/checkpoint.h"
 #include "cosim/core/node.h"
@@ -58,9 +58,10 @@ struct I2cMasterPort {
 
 /// A device in another node.
 struct I2cDevicePort {
-    std::string name;                       ///< port name: "rab"
-    std::vector<std::uint8_t> addresses{};  ///< 7 bits; it is told of Starts for these only, empty: of all
-    bool prompt = false;                    ///< never stretches: knows its answer at once
+    std::string name;  ///< port name: "rab"
+    std::vector<std::uint8_t>
+        addresses{};      ///< 7 bits; it is informed of Starts for these only, empty: of all
+    bool prompt = false;  ///< never stretches: knows its answer at once
 };
 
 struct I2cBusOptions {
@@ -196,7 +197,7 @@ class I2cBusNode final : public Node {
                 Time earliest);
     Time ninth_clock(const I2cPhase& phase) const;
     Time half_clock() const { return nominal_period_ / 2; }
-    /// How long after its begin a device in another node is told of a phase.
+    /// How long after its begin a device in another node is informed of a phase.
     Time told_after(PortIndex device) const;
     bool awaits_devices() const;
 

@@ -1,4 +1,4 @@
-// What the I2C bus says of itself: its devices, counters and warnings.
+// What the I2C bus reports of itself: its devices, counters and warnings.
 
 #include "base/times_text.h"
 #include "cosim/i2c/i2c_bus.h"
@@ -28,7 +28,7 @@ std::string I2cBusNode::device_list() const {
 
 std::vector<std::string> I2cBusNode::warnings() const {
     std::vector<std::string> lines;
-    // A main board says so itself.
+    // A main board reports it itself.
     for (const auto& [who, times] : counters_.absent)
         if (options_.masters[who.first].waits)
             lines.push_back(fmt::format("{} addressed 0x{:02x} {} and nobody acknowledged",

@@ -26,7 +26,7 @@ class I2cLog {
     void addressed(Time now, PortIndex master, std::uint8_t byte);
     /// The bus answered the owner's last Start, Write or Read; `stretched`: later than without the device.
     void answered(Time now, PortIndex master, const I2cPhase& answer, bool to_start, bool stretched);
-    /// `master` was told BusLost for a phase of its own.
+    /// `master` was sent BusLost for a phase of its own.
     void lost(Time now, PortIndex master, const I2cPhase& phase);
     /// Several devices acknowledged one Start, for the `times`th time.
     void crowded(Time now, std::uint8_t byte, const std::string& names, std::uint64_t times);

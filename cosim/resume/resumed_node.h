@@ -7,7 +7,7 @@
 // If it receives something else, or nothing where the saved board received something,
 //   - with `fall_back` it executes from power-up what came in so far and goes on normally: the trace is right
 //     in any case, only time is lost;
-//   - without, the state stands: the board is as the saved one was, and the report says where they differ.
+//   - without, the state stands: the board is as the saved one was, and the report states where they differ.
 //
 // It can also be the one that saves: at `save_at` it hands out its state with all that it received and sent.
 

@@ -1,6 +1,6 @@
 #pragma once
-// Files of saved states: a line of text that says what it is, the format's number, the content, and a SHA-256
-// over all of it. Written whole or not at all.
+// Files of saved states: a line of text that states what it is, the format's number, the content, and a
+// SHA-256 over all of it. Written whole or not at all.
 
 #include <cstdint>
 #include <filesystem>

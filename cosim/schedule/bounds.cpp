@@ -69,7 +69,7 @@ void Bounds::sort_nodes() {
     }
 }
 
-/// Shortest paths from the EOTs and what is pending: a node whose earliest time fell tells those behind it.
+/// Shortest paths from the EOTs and what is pending: a node whose earliest time fell informs those behind it.
 /// Begun with the earliest, hardly a node comes twice.
 void Bounds::relax() {
     sort_nodes();

@@ -29,7 +29,7 @@ class Chats {
     void compute(std::size_t group, const std::vector<Channel>& channels, const std::vector<Time>& heard);
     /// Nothing of the bus that node `n` does not know of comes in before.
     Time limit(std::size_t n) const { return n < limit_.size() ? limit_[n] : kNever; }
-    /// When node `n` says something by itself at the earliest.
+    /// When node `n` sends something by itself at the earliest.
     Time says(std::size_t n) const { return says_[n]; }
 
   private:

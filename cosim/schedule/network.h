@@ -57,16 +57,16 @@ class Network {
     Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const std::vector<LinkSpec>& links,
             const std::vector<FaultSpec>& faults, std::uint64_t seed);
 
-    /// Takes over what node `n`, whose last reply covers everything before `reached`, says of its future.
+    /// Takes over what node `n`, whose last reply covers everything before `reached`, states of its future.
     /// What it said before still holds, as far as `first_in`, the first message it took since, lets it.
     /// Before that take_sent() has taken what it sent.
     void update(std::size_t n, const NodeState& state, Time reached, Time first_in);
-    /// Takes over what node `n` says of its future after it was asked to wind up at `now`, which all nodes
+    /// Takes over what node `n` states of its future after it was asked to wind up at `now`, which all nodes
     /// have reached: what it said before holds no more.
     void renew(std::size_t n, const NodeState& state, Time now);
     /// One for each wire, by its index, then those that lead back to their senders.
     const std::vector<Channel>& channels() const { return channels_; }
-    /// What comes back of what node `n` says on each port, as the others stand now.
+    /// What comes back of what node `n` sends on each port, as the others stand now.
     void echoes(std::size_t n, std::vector<PortEcho>& echoes);
 
     /// Takes what node `n` has sent since the mark before its last one: `done.sure` messages are final, the

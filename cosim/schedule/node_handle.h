@@ -27,7 +27,7 @@ struct PortState {
     friend bool operator==(const PortState&, const PortState&) = default;
 };
 
-/// What a node says of its future after each advance.
+/// What a node states of its future after each advance.
 struct NodeState {
     std::vector<PortState> ports;
     std::optional<Stop> stop;
@@ -58,16 +58,16 @@ class NodeHandle {
     const std::vector<Port>& ports() const { return ports_; }
     /// As of the last reply.
     const NodeState& state() const { return state_; }
-    /// How far the last reply says it came; messages of its inbox from then on were not taken.
+    /// How far the last reply states it came; messages of its inbox from then on were not taken.
     const Advanced& advanced() const { return advanced_; }
     Time reached() const { return advanced_.reached; }
     /// Messages of the last reply, by the sender's port.
     std::vector<Message>& outbox() { return outbox_; }
 
-    /// Waits until the node is made and has told its ports and first state.
+    /// Waits until the node is made and has reported its ports and first state.
     virtual void await_ready() = 0;
-    /// Asks the node to advance, in strides if `echoes` says so (cosim/schedule/stride.h); one grant at a
-    /// time.
+    /// Asks the node to advance, in strides if `echoes` asks for them (cosim/schedule/stride.h); one grant at
+    /// a time.
     virtual void grant(Reach reach, const std::vector<Message>& inbox,
                        const std::vector<PortEcho>& echoes) = 0;
     /// True once the reply to the last grant is complete. A node in this process does its work here, up to

@@ -47,7 +47,7 @@ class RunAhead {
     /// After begin() gave nothing. `wait`: lets the node wait for some milliseconds.
     std::optional<Advanced> resume(bool wait, std::vector<Message>& outbox);
 
-    /// What the node says of its future, having run ahead: its EOTs are beyond what is foreseen, its
+    /// What the node states of its future, having run ahead: its EOTs are beyond what is foreseen, its
     /// lookaheads hold for whatever else comes in from the time reached on.
     void read_state(NodeState& state) const;
 

@@ -109,7 +109,7 @@ void Schedule::listen(std::size_t group, const std::vector<NodeTimes>& nodes) {
     chats_.compute(group, *channels_, heard_);
 }
 
-/// How far node `n` may well go for its bus: what it hears or says itself there it does, be it answered at
+/// How far node `n` may well go for its bus: what it hears or sends itself there it does, be it answered at
 /// the same time.
 Time Schedule::turn_end(std::size_t n) const {
     if (chats_.group_of(n) == kNobody) return kNever;

@@ -50,7 +50,7 @@ class Schedule {
     const Chats& chats() const { return chats_; }
 
     /// How far node `n` may go, in strides where that is beyond bounds().limit(n): there only the echo of
-    /// what it says itself limits it. At most its present time if it may not go.
+    /// what it sends itself limits it. At most its present time if it may not go.
     Time target(std::size_t n) const { return target_[n]; }
     /// How far it is to run ahead; target(n) if not at all.
     Time ahead(std::size_t n) const { return ahead_[n]; }
@@ -98,7 +98,7 @@ class Schedule {
     Time window_ = 0, ceiling_ = 0;
     bool any_ahead_ = false;
     std::vector<Time> next_;
-    std::vector<Time> due_;  ///< granted so far, a node with a long lookahead says what comes next
+    std::vector<Time> due_;  ///< granted so far, a node with a long lookahead states what comes next
     Time round_ = 0;
     std::vector<std::size_t> chosen_;
     bool complete_ = false;

@@ -2,7 +2,7 @@
 // Going on without asking: how a node, wherever it lives, uses a grant that reaches beyond the echo of its
 // own messages.
 //
-// A node may be granted as far as the others, by themselves, leave it alone. Only what it says itself can
+// A node may be granted as far as the others, by themselves, leave it alone. Only what it sends itself can
 // come back earlier; so it goes in strides, each no longer than the shortest way out and back, and stops
 // before the echo of what it said. A board that is silent on all its lines thus runs for a whole step of the
 // world with one round trip to the conductor.
@@ -28,8 +28,8 @@ struct PortEcho {
 
 /// How far a grant reaches.
 struct Reach {
-    Time sure = 0;   ///< nothing comes in before, whatever the node says
-    Time until = 0;  ///< nothing but the echo of what it says; >= sure
+    Time sure = 0;   ///< nothing comes in before, whatever the node sends
+    Time until = 0;  ///< nothing but the echo of what it sends; >= sure
     Time ahead = 0;  ///< a node that can go back runs on to here (cosim/schedule/run_ahead.h); >= until
 
     friend bool operator==(const Reach&, const Reach&) = default;

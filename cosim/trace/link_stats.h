@@ -24,7 +24,7 @@ struct LinkStats {
     std::uint64_t radio_frames = 0;
     std::uint64_t radio_octets = 0;  ///< of their PHY payloads
     std::uint64_t can_offers = 0;    ///< frames that a controller wanted to send
-    std::uint64_t can_sent = 0;      ///< told to it, as the next two
+    std::uint64_t can_sent = 0;      ///< reported to it, as the next two
     std::uint64_t can_received = 0, can_errors = 0;
     std::uint64_t faults = 0;  ///< messages harmed by a fault
     std::uint64_t lost = 0;    ///< of these, kept from arriving

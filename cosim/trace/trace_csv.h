@@ -58,7 +58,7 @@ class TraceCsvSink : public TraceSink {
     std::string begin_with_;
 };
 
-/// What a record says, with names for numbers.
+/// What a record holds, with names for numbers.
 TraceRow to_row(const TraceRecord& record, const std::vector<LinkSpec>& links);
 
 /// Calls `take` for each row, in the order of the file. Throws InputError naming `name` and the line. A last

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kFields = 10;
 constexpr std::string_view kParityLetters = "NOE";
-// In the order of I2cPhaseKind; Read and Acknowledge tell the ninth bit as well.
+// In the order of I2cPhaseKind; Read and Acknowledge give the ninth bit as well.
 constexpr std::array<std::string_view, 7> kPhases{"start", "write", "read", "stop", "", "data", "lost"};
 
 void put_quoted(std::string& out, std::string_view text) {
@@ -157,7 +157,7 @@ void put_payload(std::string& out, const CanMessage& message) {
     out += ',';
 }
 
-/// Reads fields, and says where and what when one cannot be.
+/// Reads fields, and reports where and what when one cannot be.
 class Parser {
   public:
     Parser(std::string_view text, std::string_view file, std::size_t line) : file_(file), line_(line) {

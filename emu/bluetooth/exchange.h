@@ -1,7 +1,7 @@
 #pragma once
 // Whole exchanges between two modules, host and all, as in the published experiment: a sender's host looks
-// for e-pucks, asks their names, links with the one that it wants, says a word, releases. The receiver's
-// module is in automatic mode and becomes transparent. The sender's host says what the e-puck library says.
+// for e-pucks, asks their names, links with the one that it wants, sends a word, releases. The receiver's
+// module is in automatic mode and becomes transparent. The sender's host sends what the e-puck library sends.
 
 #include "emu/bluetooth/times.h"
 

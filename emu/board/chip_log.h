@@ -1,6 +1,6 @@
 #pragma once
 // The log of a board, as far as its dsPIC goes: firmware, resets, traps, registers without a model, warnings,
-// UART firsts and errors. The board adds lines of its own (timed_lines.h says when).
+// UART firsts and errors. The board adds lines of its own (timed_lines.h states when).
 
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
@@ -46,7 +46,7 @@ class ChipLog {
     static constexpr std::size_t kUarts = 2;
     struct UartSeen {
         bool sent = false, arrived = false;
-        dspic::UartCounters counters;  // errors told so far
+        dspic::UartCounters counters;  // errors reported so far
         template <class Archive>
         void state(Archive& archive) {
             archive(sent, arrived, counters);

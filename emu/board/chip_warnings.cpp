@@ -16,7 +16,8 @@ std::string loop_text(std::uint32_t first, std::uint32_t last) {
     return first == last ? fmt::format("0x{:04x}", first) : fmt::format("0x{:04x}..0x{:04x}", first, last);
 }
 
-/// Cycles before a change of clock cannot be turned into times any more: a chip that was switched says later.
+/// Cycles before a change of clock cannot be turned into times any more: a chip that was switched reports
+/// later.
 double seconds(const dspic::Chip& chip, dspic::Cycle cycle) {
     return cosim::to_seconds(chip.clock().time_of(cycle));
 }

@@ -8,7 +8,7 @@
 // kept.
 // 3. The first row of colour comes 7 rows behind that of grey, as the two VSYNC settings of both drivers
 // mean; the window's Y is kept, for the library never writes it. 4. Pads drive the lines whatever pad control
-// says.
+// states.
 // 5. The sketch filter and the auto control's windows are kept and change nothing. 6. As po6030k.cpp, 4.
 
 #include "emu/camera/model.h"

@@ -12,7 +12,7 @@ class CodeMemory {
     /// Address space reserved; pages are taken from the host as they are filled.
     static constexpr std::size_t kBytes = std::size_t{64} << 20;
 
-    /// Tries to map it; available() says whether the host allows executable memory.
+    /// Tries to map it; available() is whether the host allows executable memory.
     CodeMemory();
     ~CodeMemory();
     CodeMemory(const CodeMemory&) = delete;

@@ -1,5 +1,6 @@
 #pragma once
-// The chip's timetable: each peripheral owns a few slots and says at which cycle it next has something to do.
+// The chip's timetable: each peripheral owns a few slots and states at which cycle it next has something to
+// do.
 
 #include <array>
 #include <cstdint>

@@ -22,7 +22,7 @@ class ByteSegments {
   public:
     /// `file` is the name for messages and must outlive this object.
     explicit ByteSegments(std::string_view file) : file_(file) {}
-    /// `place` says where in the file the piece stands ("line 7"), for messages about overlaps. Throws
+    /// `place` states where in the file the piece stands ("line 7"), for messages about overlaps. Throws
     /// InputError once the pieces exceed 8 MB, eight times the largest dsPIC: no damaged table may claim the
     /// machine's memory.
     void add(std::uint64_t address, std::vector<std::uint8_t> bytes, std::string place);

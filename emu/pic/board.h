@@ -44,7 +44,7 @@ struct BoardParameters {
     std::string name = "epuck";  ///< random streams are "<name>/adc", "<name>/mic0", ...
     std::uint64_t seed = 1;      ///< the run's seed
     double crystal_hertz =
-        7'372'800.0;                ///< FCY is twice this (XT with PLL x8), whatever the image's FOSC says
+        7'372'800.0;                ///< FCY is twice this (XT with PLL x8), whatever the image's FOSC states
     double crystal_ppm = 0.0;       ///< error of the crystal, + is fast
     double adc_noise_counts = 1.0;  ///< standard deviation, 0 or more
     std::optional<double> phototransistor_noise_counts{};  ///< of AN8..AN15; none: as of all channels
@@ -112,7 +112,7 @@ class Board : public dspic::Pins {
     chip::AnalogFaults& analog_faults() { return analog_faults_; }
     /// The battery's voltage is lower by so much from `now` on. Returns as set_signal() does.
     std::optional<dspic::PortLetter> set_sag(double volts, dspic::Cycle now);
-    /// It has this voltage, before any sag, whatever set_signal() says; nullopt: what that says.
+    /// It has this voltage, before any sag, whatever set_signal() sets; nullopt: what that sets.
     std::optional<dspic::PortLetter> set_battery(std::optional<double> volts, dspic::Cycle now);
     /// Light that swallows this share of each proximity sensor's signal.
     void set_ambient(const chip::AmbientShares& shares) {

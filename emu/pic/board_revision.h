@@ -1,5 +1,5 @@
 #pragma once
-// The revisions of the e-puck's main board that firmware can tell apart. Source: e-puck library,
+// The revisions of the e-puck's main board that firmware can distinguish. Source: e-puck library,
 // e_init_port.c and utility.c; e-puck fact sheet 3.13.
 
 #include "base/enum_names.h"

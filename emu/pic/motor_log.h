@@ -1,5 +1,5 @@
 #pragma once
-// From the steps of one motor to what a log says of it: when it started, turned round and stopped.
+// From the steps of one motor to what a log has of it: when it started, turned round and stopped.
 
 #include "cosim/core/time.h"
 

@@ -8,7 +8,7 @@ using cosim::Time;
 
 namespace {
 
-/// Changes of one LED that are all told; of a program that dims by switching only milestones follow.
+/// Changes of one LED that are all logged; of a program that dims by switching only milestones follow.
 constexpr std::uint64_t kAllChanges = 500;
 
 bool is_led(SignalId id) {

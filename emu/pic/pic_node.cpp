@@ -66,7 +66,7 @@ void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
         run_until(message.time);
         receive(message);
     }
-    // A press at `until` itself belongs to the next grant: what this one tells must not depend on the cut.
+    // A press at `until` itself belongs to the next grant: what this one sends must not depend on the cut.
     press_reset(until, false);
     run_faults(until, false);
     run_until(until);
@@ -75,7 +75,7 @@ void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
     outbox_ = nullptr;
 }
 
-/// Steps due before `until` are told now; one that is due later may still be undone by an instruction.
+/// Steps due before `until` are sent now; one that is due later may still be undone by an instruction.
 void PicNode::settle(cosim::Time until) {
     const dspic::Cycle next = chip_->clock().first_cycle_at(until);
     if (next > 0) board_.settle(next - 1);
@@ -137,7 +137,7 @@ void PicNode::receive(const cosim::Message& message) {
     }
 }
 
-/// The bus tells of a phase half a clock before the answer is due: the camera is prompt
+/// The bus reports a phase half a clock before the answer is due: the camera is prompt
 /// (cosim/i2c/i2c_bus.h).
 cosim::Time PicNode::camera_lookahead() const {
     const auto fastest_period = static_cast<cosim::Time>(

@@ -1,5 +1,5 @@
 #pragma once
-// The wave at a microphone as it is told sample by sample: straight lines between samples kSoundPeriod apart,
+// The wave at a microphone as it is sent sample by sample: straight lines between samples kSoundPeriod apart,
 // one period late.
 
 #include "emu/dspic/core/event_queue.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Looks at the emitters and tells which infra-red frames went out: for the log and the report, it changes
+// Looks at the emitters and reports which infra-red frames went out: for the log and the report, it changes
 // nothing. Chips are counted at their nominal length, so a frame that was stretched on its way (a transfer on
 // I2C holds the firmware up) counts as irregular, as it would for most receivers.
 
@@ -29,7 +29,7 @@ class FrameWatch {
 
     /// Emitters that are on from `now` on.
     void change(std::uint16_t emitters, cosim::Time now);
-    /// Time has come to `now`: what ended before it is told.
+    /// Time has come to `now`: what ended before it is reported.
     void settle(cosim::Time now);
 
     std::uint64_t frames() const { return frames_; }

@@ -1,7 +1,7 @@
 #pragma once
 // Looks at the board's I2C slave, phase by phase, and keeps count: for the log and the report, it changes
 // nothing. The register map is the e-RandB's (range-and-bearing fact sheet 2.1); what silicon and firmware
-// ignore without a word (a payload size of 7, a register that does not exist) is told here.
+// ignore without a word (a payload size of 7, a register that does not exist) is reported here.
 
 #include "cosim/core/message.h"
 #include "cosim/core/message_state.h"

@@ -10,7 +10,7 @@ namespace {
 
 using cosim::Time;
 
-/// Frames that are all told; then milestones.
+/// Frames that are all logged; then milestones.
 constexpr std::uint64_t kAllFrames = 20;
 /// Text on UART2: the boot messages, and not what raw-peak mode prints for ever.
 constexpr int kAllLines = 10;

@@ -188,7 +188,7 @@ void RabNode::i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) {
     outbox_->push_back({board::reached(*chip_, faults_.get(), now), kI2c, answer});
 }
 
-/// A device port cannot carry it: the firmware waits for an answer for ever, and the report says so.
+/// A device port cannot carry it: the firmware waits for an answer for ever, and the report states it.
 void RabNode::i2c_phase(int /*unit*/, const cosim::I2cPhase& /*phase*/) {
     ++own_.master_phases;
 }

@@ -7,7 +7,7 @@
 namespace puckloop::radio {
 
 namespace {
-constexpr double kNearest = 0.1;  // m: closer, the far field's law says nothing
+constexpr double kNearest = 0.1;  // m: closer, the far field's law does not hold
 constexpr double kCaptureDb = 3.0;
 constexpr double kLossAtSensitivity = 0.01;
 }  // namespace

@@ -94,7 +94,7 @@ class Board : private avr::Pins {
     chip::AnalogFaults& analog_faults() { return analog_faults_; }
     /// The battery's voltage is lower by so much.
     void set_sag(double volts);
-    /// It has this voltage, before any sag, whatever set_signal() says; nullopt: what that says.
+    /// It has this voltage, before any sag, whatever set_signal() sets; nullopt: what that sets.
     void set_battery(std::optional<double> volts);
     /// Light on each barrier's sensor, as a share of the supply.
     void set_ambient(const chip::AmbientShares& shares);

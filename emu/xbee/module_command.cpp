@@ -1,4 +1,4 @@
-// Command mode: a host that speaks no API frames says "+++" between two silences, then lines of AT commands.
+// Command mode: a host that speaks no API frames sends "+++" between two silences, then lines of AT commands.
 // Source: XBee/XBee-PRO DigiMesh 2.4 manual (90000991), "Command mode", CC, CT, GT, CN.
 
 #include "emu/xbee/module.h"

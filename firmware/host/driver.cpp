@@ -35,7 +35,7 @@ std::vector<std::uint8_t> drawn(std::uint64_t seed) {
     return bytes;
 }
 
-/// Runs it, and says what came out. Twice where `again`: both runs have to be the same.
+/// Runs it, and prints what came out. Twice where `again`: both runs have to be the same.
 void run(const std::vector<std::uint8_t>& bytes, const std::string& name, bool again) {
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
     const hosted::Seen first = hosted::seen();

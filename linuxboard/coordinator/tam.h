@@ -71,7 +71,7 @@ class Tam {
     void sent(const protocols::XBeeBytes& payload, std::uint8_t id, double now);
     /// The last report has the colour that is wished, and nothing else was sent since.
     bool settled() const { return color_ && shows(*color_) && !unsure_; }
-    /// The colour is sent whatever the last report says.
+    /// The colour is sent whatever the last report states.
     void confirm_leds() {
         unsure_ = true;
         set_leds_ = {};

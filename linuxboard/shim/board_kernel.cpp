@@ -210,7 +210,7 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
     case Op::Counters:
         return done(0, 0, bytes_of(tty_.counters()));
     case Op::Transfer:
-        return false;  // ends when the adapter says so
+        return false;  // ends when the adapter ends it
     case Op::Ioctl:
     case Op::Map:
     case Op::VideoRead:

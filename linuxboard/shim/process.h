@@ -47,7 +47,7 @@ class Process {
     int wait_status() const { return wait_status_; }
     /// No thread catches, ignores, blocks or waits for `signal`, whose default action ends the program.
     bool dies_of(int signal) const;
-    /// What the kernel says of the process that keeps silent: computing, or in which call.
+    /// What the kernel reports of the process that keeps silent: computing, or in which call.
     std::string describe_silence() const;
 
     wire::Channel& channel() { return channel_; }

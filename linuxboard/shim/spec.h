@@ -1,5 +1,5 @@
 #pragma once
-// What a scenario says of one Linux program: the JSON text from which its node is made.
+// What a scenario states of one Linux program: the JSON text from which its node is made.
 
 #include "cosim/core/time.h"
 #include "cosim/faults/fault_json.h"
@@ -72,7 +72,7 @@ struct LinuxSpec {
     double watchdog_s = 5.0;     ///< wall-clock seconds a program may compute without letting time pass
     bool ask_always = false;     ///< no key; for tests: the library answers nothing by itself
     std::vector<cosim::CarriedFault> faults;
-    std::string shim;            ///< the preloaded library; empty: the one built with this program
+    std::string shim;  ///< the preloaded library; empty: the one built with this program
 };
 
 /// Throws InputError naming the key. Keys are the members above; times in seconds (`start_s`, `down_s`,

@@ -200,7 +200,7 @@ struct ProcessEntry {
     char call_name[kNameLength] = {};  ///< the last call taken over
 };
 
-/// What the node sets before the program starts, and the processes, so that the node can tell where one hangs
+/// What the node sets before the program starts, and the processes, so that the node can find where one hangs
 /// or died.
 struct Page {
     std::uint32_t version = kVersion;

@@ -23,7 +23,7 @@ constexpr std::array<std::array<double, 2>, 3> kTurretPlace{
 constexpr double kLampRadius = 0.02;
 constexpr double kLampLevel = 20.0;
 
-/// Visible grey of walls and things: infra-red reflectivity says no more than dark or light.
+/// Visible grey of walls and things: infra-red reflectivity gives no more than dark or light.
 constexpr double kBrightest = 0.85;
 constexpr double kTopShare = 1.0;
 constexpr std::array<double, 3> kRobotSide{0.22, 0.24, 0.22};  // translucent body, dark boards behind

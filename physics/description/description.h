@@ -136,7 +136,7 @@ struct World {
     std::string node_name = "world";
     std::string file;  ///< the user's file, for error messages
     std::uint64_t seed = 1;
-    double ambient_light = 1.0;  ///< 0 dark, 1 ordinary room, 12 the brightest the sensors tell apart
+    double ambient_light = 1.0;  ///< 0 dark, 1 ordinary room, 12 the brightest the sensors distinguish
     Arena arena;
     std::vector<Wall> walls;
     std::vector<Box> boxes;

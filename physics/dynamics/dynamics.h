@@ -3,7 +3,7 @@
 // dWorldStep, 1 ms). Sources: ODE 0.16 manual; physics facts, section 8.
 //
 // Deviations: 1. a wheel touches the floor in one point, the lowest of a thin disc, so that it scrubs and
-// creeps only as floor_motion.h says.
+// creeps only as floor_motion.h states.
 // 2. Contacts of robots and cylinders with anything upright are found in plan (they do not topple over each
 // other); boxes meet boxes and the floor in space. 3. No gyroscopic torques. 4. Rolling resistance is nil.
 

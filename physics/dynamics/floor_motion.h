@@ -4,7 +4,7 @@
 // pushes move all of the floor under the robot, which goes along until it meets something upright. The
 // formulas are those of the motion effects 4, 6, 13, 14 (docs/gap.md).
 //
-// Deviations: 1. slope_creep goes by the tilt along the nose, as its formula says: driven backwards down a
+// Deviations: 1. slope_creep goes by the tilt along the nose, as its formula states: driven backwards down a
 // slope a robot loses the share that it loses driven forwards up it; a tyre that creeps under a force would
 // gain. 2. A push takes the robot along for 50 ms, it does not hit or topple. 3. One push at a time: one that
 // falls due during another follows it. 4. Creep costs all of the way at most.

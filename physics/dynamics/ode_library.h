@@ -1,5 +1,5 @@
 #pragma once
-// ODE as a library: started once, told where its messages go, prepared for each thread that steps a world.
+// ODE as a library: started once, given where its messages go, prepared for each thread that steps a world.
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,8 @@
 // and what else shone on it meanwhile. The ground truth beside which the boards' own results are held.
 //
 // A frame begins with the first emitter on and ends when all have been dark for more than three chips. Frames
-// sent back to back are told apart by their preambles: light for four chips or more does not occur elsewhere.
+// sent back to back are distinguished by their preambles: light for four chips or more does not occur
+// elsewhere.
 //
 // File (CSV), one row a frame and receiver, in the order in which frames are known to have ended: t_s and
 // end_s first and last light; sender; receiver; distance_m between the bodies; level_counts and carrier: the

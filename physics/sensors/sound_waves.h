@@ -23,7 +23,7 @@ inline constexpr double kSoundLatency = 2e-3;     ///< s, beside the way
 inline constexpr std::size_t kSoundSamples = 16;  ///< a step
 inline constexpr cosim::Time kSoundPeriod = cosim::kMillisecond / kSoundSamples;
 
-/// What drives a speaker over time. It is told of changes; between two that follow each other closely the
+/// What drives a speaker over time. It is informed of changes; between two that follow each other closely the
 /// wave is a straight line, as a converter's filter would have it.
 /// What stays is no sound and dies away within some milliseconds.
 class SoundTrack {

@@ -10,7 +10,7 @@
 
 namespace puckloop::physics {
 
-/// A text file that says so when the disk is full. Throws RunError.
+/// A text file that reports it when the disk is full. Throws RunError.
 class CsvFile {
   public:
     CsvFile(std::string path, const std::string& header);

@@ -186,7 +186,7 @@ TomlValue parse_command_text(std::string_view text) {
         fail(fmt::format("'{}' is unknown", verb),
              meant.empty() ? "list, or one of " + known_verbs() : fmt::format("perhaps '{}'", meant));
     }
-    // Of add the first word is the kind, which says what the keys are.
+    // Of add the first word is the kind, which decides what the keys are.
     const auto keys = keys_of(verb, words.size() > 1 ? words[1].text : "");
     TomlTable table;
     std::string key = verb;

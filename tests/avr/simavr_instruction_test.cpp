@@ -60,7 +60,7 @@ bool uses_pointers(const Form& form) {
            form.mnemonic != "elpm";
 }
 
-/// A pointer register loaded or stored by the access that moves it: "the result is undefined", says the
+/// A pointer register loaded or stored by the access that moves it: "the result is undefined", states the
 /// manual.
 bool leaves_result_open(const Form& form, std::uint16_t word) {
     const auto name = form.operands.find_first_of("XYZ");

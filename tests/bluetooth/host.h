@@ -1,5 +1,5 @@
 #pragma once
-// Modules with hosts at their serial lines, as the node of a run has them: what a host says goes in as
+// Modules with hosts at their serial lines, as the node of a run has them: what a host sends goes in as
 // characters, what its module answers comes out as packets and bytes with their times.
 
 #include "emu/bluetooth/air_node.h"
@@ -93,7 +93,7 @@ class Air {
         say(port, protocols::encode_lmx({protocols::kLmxRequest, opcode, data}));
     }
 
-    /// Runs on for `time` in steps, and checks what the node says of its future.
+    /// Runs on for `time` in steps, and checks what the node states of its future.
     void run(Time time, Time step = cosim::kNever) {
         const Time until = now_ + time;
         while (now_ < until) {

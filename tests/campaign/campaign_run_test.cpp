@@ -191,7 +191,7 @@ TEST_CASE("a small campaign has every outcome that its faults must have") {
     const std::string report = text_of(bench.out("reference") / "report.html");
     CHECK_THAT(report, Contains("class=heat") && Contains("faults replay") && Contains("</html>") &&
                            !Contains("<script"));
-    // What a sweep varies is told apart in its map, counts too.
+    // What a sweep varies is distinguished in its map, counts too.
     CHECK_THAT(report, Contains("drop on robot0.uart from robot0.linux count=1</th>") &&
                            Contains("drop on robot0.uart from robot0.linux count=6</th>"));
     replay(bench, table);

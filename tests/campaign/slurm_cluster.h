@@ -12,7 +12,7 @@ namespace puckloop::tests {
 
 class SlurmCluster {
   public:
-    /// Starts it and sets SLURM_CONF for this process and its children. `missing()` says why there is none.
+    /// Starts it and sets SLURM_CONF for this process and its children. `missing()` gives why there is none.
     explicit SlurmCluster(const std::filesystem::path& folder);
     ~SlurmCluster();
     SlurmCluster(const SlurmCluster&) = delete;

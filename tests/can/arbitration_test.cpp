@@ -114,7 +114,7 @@ TEST_CASE("who sends when is as in a straight model, drawn at random") {
             if (one.news.what == CanNews::What::Sent)
                 seen.push_back({one.station, one.news.start, one.time, one.news.frame});
         CHECK(seen == expected);
-        // All others received each of them, at the same instant, and nothing else was told.
+        // All others received each of them, at the same instant, and nothing else was reported.
         for (std::size_t i = 0; i < stations; ++i) {
             std::vector<Passage> received, of_others;
             for (const Told& one : bench.of(i, CanNews::What::Received))

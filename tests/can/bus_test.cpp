@@ -1,4 +1,4 @@
-// The bus as a node: what controllers say and are told, its promises to the conductor, what it reports.
+// The bus as a node: what controllers send and get, its promises to the conductor, what it reports.
 
 #include "cosim/can/can_bus.h"
 #include "cosim/can/can_message.h"

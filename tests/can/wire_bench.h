@@ -1,5 +1,5 @@
 #pragma once
-// A CAN wire with stations that have frames to send at given times, and what they are told.
+// A CAN wire with stations that have frames to send at given times, and what they get.
 
 #include "cosim/can/can_wire.h"
 #include "cosim/faults/kinds/kind_table.h"

@@ -1,5 +1,5 @@
 // The experiments against a simulated set of TAMs, in simulated time: robots come and go at random, radio
-// packets are lost, and what the event table says is checked against rules that know nothing of the
+// packets are lost, and what the event table states is checked against rules that know nothing of the
 // controllers.
 
 #include "linuxboard/coordinator/coordinator.h"

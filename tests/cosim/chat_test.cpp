@@ -32,7 +32,7 @@ std::vector<Channel> one_bus(Time master, Time bus, Time device) {
 
 TEST_CASE("each of a bus goes as far as the phase under way allows") {
     Chats chats;
-    // The master sleeps until 1000: nobody says a word before.
+    // The master sleeps until 1000: nobody sends anything before.
     auto channels = one_bus(1000, kNever, kNever);
     chats.update(channels, 4);
     REQUIRE(chats.count() == 1);
@@ -48,7 +48,7 @@ TEST_CASE("each of a bus goes as far as the phase under way allows") {
     chats.compute(0, channels, {kNever, kNever, 300, kNever});
     CHECK(chats.limit(1) == 375);
     CHECK(chats.limit(0) == 385);
-    CHECK(chats.limit(2) == 380);  // the bus may hand on at once what the device says
+    CHECK(chats.limit(2) == 380);  // the bus may hand on at once what the device sends
     // It has, and answers at 380.
     channels = one_bus(kNever, kNever, 380);
     chats.compute(0, channels, {kNever, 380, kNever, kNever});

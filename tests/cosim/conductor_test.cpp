@@ -270,7 +270,7 @@ TEST_CASE("a message before the EOT names the node, the port and the EOT") {
 }
 
 TEST_CASE("an EOT holds, even when the node reports an earlier one later") {
-    // It says that it will be silent for ever, then that it may speak at any time, then speaks.
+    // It states that it will be silent for ever, then that it may speak at any time, then speaks.
     Run run{{{"honest", "idle"}, {"turncoat", "turncoat at_us=700"}},
             {toy::uart("wire", {"honest", "uart0"}, {"turncoat", "uart0"})}};
     run.options.duration = 40 * kMillisecond;

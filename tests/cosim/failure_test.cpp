@@ -1,4 +1,4 @@
-// Peers that die, stall or lie: the run ends soon, says who and when and why, and loses nothing.
+// Peers that die, stall or lie: the run ends soon, names who and when and why, and loses nothing.
 
 #include "toy_run.h"
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Time kMs = kMillisecond;
 
-/// One that talks at random, one that listens; the fault sits on what the first says.
+/// One that talks at random, one that listens; the fault sits on what the first sends.
 Run talk(FaultSpec fault) {
     fault.link = "wire";
     fault.from = "talker";

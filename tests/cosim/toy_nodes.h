@@ -11,7 +11,7 @@ namespace puckloop::cosim::toy {
 /// Kinds, and what they do:
 ///   chatter  acts at random times on every port, answers some of what it gets; behaves well
 ///   echo     answers each UART frame with the next byte after `delay_us`
-///   idle     never says a word
+///   idle     never sends anything
 ///   stopper  asks to end the run at `at_us`
 ///   thrower  throws at `at_us`        exiter  exits with status 3     aborter  raises SIGABRT
 ///   staller  sleeps for ever at `at_us`

@@ -269,7 +269,7 @@ TEST_CASE("the merger does not go through what waits again and again") {
 
 namespace {
 
-/// A row as the format's comment says it, written plainly.
+/// A row as the format's comment has it, written plainly.
 std::string plain_row(const TraceRow& row) {
     const auto seconds = [](Time time) {
         const Time size = std::abs(time);

@@ -1,5 +1,5 @@
 // Why the chip was reset or trapped, as the firmware itself reads it back: RCON or MCUSR before anything else
-// runs, INTCON1 and the stacked program counter in a trap's handler. It tells by its UART, and the run's
+// runs, INTCON1 and the stacked program counter in a trap's handler. It reports by its UART, and the run's
 // report has to say the same. Sources: dsPIC30F Family Reference Manual, sections 6 and 8; DS70286, section
 // 6; ATmega1284P data sheet, "System Control and Reset".
 
@@ -58,7 +58,7 @@ Told told_by(const std::string& chip, const std::string& content, const std::str
     return told;
 }
 
-/// What `entry` of the report's list says is at a place in the function guilty.
+/// What `entry` of the report's list states is at a place in the function guilty.
 std::uint32_t guilty_pc(const nlohmann::json& entry) {
     INFO(entry.dump());
     CHECK(entry.at("symbol").get<std::string>().starts_with("guilty"));

@@ -1,5 +1,5 @@
 // Firmware that goes wrong in a function at a place drawn at random: trap, reset or nothing as on silicon,
-// and the report says what, with the program counter and the function.
+// and the report states what, with the program counter and the function.
 
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
@@ -80,7 +80,7 @@ guilty: nop
     return tests::avr_elf(program.bytes, labels);
 }
 
-/// A line of `text` says `what`, at a place in guilty that is near its beginning.
+/// A line of `text` states `what`, at a place in guilty that is near its beginning.
 void check_named(const std::string& text, const std::string& what, std::uint32_t place) {
     INFO(what << " near " << fmt::format("{:#x}", place) << "\n" << text);
     const std::size_t at = text.find(what);

@@ -24,7 +24,7 @@ class GdbServer {
     /// What it wrote on standard output and standard error so far.
     std::string out() const;
     std::string err() const;
-    /// Waits until it says that it listens, at most 30 s: GDB itself does not.
+    /// Waits until it prints that it listens, at most 30 s: GDB itself does not.
     void await_listening() const;
     /// Waits for its end; the exit status, -1 for a signal. At most 60 s.
     int wait();

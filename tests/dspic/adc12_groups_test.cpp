@@ -1,5 +1,5 @@
 // The converter repeats a group of conversions whose inputs stand still without asking for them again, and
-// says until when its buffers stay as they are. Neither may be seen: two converters, one with pins that say
+// states until when its buffers stay as they are. Neither may be seen: two converters, one with pins that say
 // when they stand still, agree at every access.
 
 #include "base/random.h"
@@ -30,7 +30,7 @@ struct AdcBench : Bench {
         inputs.volts[static_cast<std::size_t>(channel)] = fraction;
         ++inputs.epoch;
     }
-    /// What is stored counts as long as the converter says so.
+    /// What is stored counts as long as the converter states it.
     void check_plain(std::uint16_t address) {
         const SfrSpace::Plain& plain = sfr.plain();
         const bool only_look = now < plain.until[plain.kind[address / 2]];

@@ -43,7 +43,7 @@ class CanBusBench {
                          std::vector<cosim::CarriedFault> faults = {})
         : chips_(std::move(chips)), bus_({"can", names(chips_.size()), "", std::move(faults)}) {}
 
-    /// The peer says this at `time`, after all before.
+    /// The peer sends this at `time`, after all before.
     void peer(cosim::Time time, const CanMessage& message) {
         waiting_.push_back({time, static_cast<cosim::PortIndex>(chips_.size()), message});
     }
@@ -80,7 +80,7 @@ class CanBusBench {
             now_ = next;
         }
     }
-    /// What the bus has told so far.
+    /// What the bus has reported so far.
     std::vector<Told> told(std::size_t chip, CanKind kind) const {
         std::vector<Told> some;
         for (const Told& one : told_)

@@ -39,7 +39,7 @@ struct Pins30 : Pins {
     std::uint16_t spi_answer = 0xFFFF;
     bool pwm_edges = true;
     double volts = 0.5;  ///< at analog inputs, of the supply
-    double vdd = 3.3;    ///< Chip::supply_changed() tells of a new one
+    double vdd = 3.3;    ///< Chip::supply_changed() reports a new one
     MasterCodec codec;
 
     explicit Pins30(const DciMaster& codec_clocks = {}) : codec{codec_clocks} {}

@@ -25,7 +25,7 @@ struct Recorder : Pins {
         std::uint16_t levels;
     };
     struct Sent {
-        Time handed_out;  ///< the chip's time when it told
+        Time handed_out;  ///< the chip's time when it reported
         Time stamp;       ///< of the message
     };
     const Chip* chip = nullptr;

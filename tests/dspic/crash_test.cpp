@@ -1,4 +1,4 @@
-// Programs that go wrong: what the chip does, and that the report says so with place and symbol.
+// Programs that go wrong: what the chip does, and that the report states it with place and symbol.
 
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"

@@ -1,5 +1,5 @@
 // An instruction means the same in every domain that it is executed in: what the affine domain of the loop
-// walk says for the nth iteration is what the interpreter does when it executes that iteration.
+// walk gives for the nth iteration is what the interpreter does when it executes that iteration.
 
 #include "base/random.h"
 #include "emu/dspic/core/execute/semantics.h"

@@ -12,7 +12,7 @@ using puckloop::RandomStream;
 
 namespace {
 
-/// Raises T1 at a steady pace and says so; another event changes what loops look at, now and then.
+/// Raises T1 at a steady pace and reports it; another event changes what loops look at, now and then.
 struct SteadyTicker {
     Rig& rig;
     Cycle period;

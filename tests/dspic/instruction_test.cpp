@@ -180,7 +180,7 @@ TEST_CASE("instructions of every class, worked by hand") {
         const CoreState got = rig.core.state();
         CHECK(got.cycle - start == static_cast<Cycle>(c.cycles));
 
-        // Expected: the state before, changed as the case says; then what a Rig reads back at named places.
+        // Expected: the state before, changed as the case states; then what a Rig reads back at named places.
         Rig scratch("        nop\n");
         CoreState want = st;
         apply(want, scratch, c.after);

@@ -1,4 +1,4 @@
-// Interrupts, traps and resets, as the reference manual tells them.
+// Interrupts, traps and resets, as the reference manual describes them.
 
 #include "tests/dspic/rig.h"
 

@@ -53,7 +53,7 @@ inline void compare(const std::string& source, Cycle until, Cycle event_period, 
     for (Rig* rig : {&fast, &slow}) {
         rig->sfr.claim(kPolled);
         rig->sfr.claim(kRefreshed);
-        rig->core.observer().on_interrupt = nullptr;  // it would have to be told of each
+        rig->core.observer().on_interrupt = nullptr;  // it would have to be called for each
         if (rig->program.symbols.contains("isr")) rig->vector(kTrapVectors + kT1, "isr");
     }
     std::unique_ptr<Ticker> fast_ticker, slow_ticker;

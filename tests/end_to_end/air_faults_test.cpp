@@ -1,5 +1,5 @@
 // Faults of radio and IRcom in a whole run: a coordinator, a TAM, a robot in it and two that talk outside.
-// Every kind fires, does what it says, and is the same however the run is executed.
+// Every kind fires, does what it states, and is the same however the run is executed.
 
 #include "tests/end_to_end/same_run.h"
 #include "tests/end_to_end/tam_visits.h"

@@ -21,7 +21,7 @@ constexpr std::size_t kHandshake = 5, kFrame = 12, kCommand = 10;
 struct Habit {
     const char* name;
     const char* script;
-    const char* says;  ///< in the log, beside what the program says
+    const char* says;  ///< in the log, beside what the program prints
 };
 
 constexpr Habit kHabits[]{

@@ -1,4 +1,5 @@
-// Files and options that no run can be made of: status 2, one line that says which and why, nothing touched.
+// Files and options that no run can be made of: status 2, one line that states which and why, nothing
+// touched.
 
 #include "tests/end_to_end/one_line.h"
 

@@ -19,7 +19,7 @@ Ended with_program(const Workbench& bench, const Words& options, const Words& pr
     return bench.run("o", words);
 }
 
-/// What was recorded until the failure is there, and the report says how it ended.
+/// What was recorded until the failure is there, and the report states how it ended.
 void check_kept(const Workbench& bench, double simulated_s) {
     const auto report = bench.report("o");
     CHECK(report["success"] == false);

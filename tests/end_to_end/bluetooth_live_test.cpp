@@ -88,7 +88,7 @@ struct Run {
 /// second for a byte, has then left, and there is another try after the next reset.
 Ended upload(const Run& run, const std::string& end, const std::string& robot) {
     constexpr int kTries = 12;
-    const auto folder = run.bench.folder() / robot, act = folder / "act";  // what each says
+    const auto folder = run.bench.folder() / robot, act = folder / "act";  // what each prints
     std::filesystem::create_directories(act);
     Ended ended;
     for (int attempt = 0; attempt < kTries; ++attempt) {

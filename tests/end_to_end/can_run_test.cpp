@@ -35,7 +35,7 @@ std::string scenario(const std::string& robots, const std::string& controllers,
 const std::string kThree = robot(0) + robot(1) + robot(2);
 const std::string kAllThree = R"("robot0.pic.can1", "robot1.pic.can1", "robot2.pic.can1")";
 
-/// What each controller was told of whole frames, by "sent" and "received": frames in order.
+/// What each controller got reported of whole frames, by "sent" and "received": frames in order.
 std::map<std::string, std::vector<std::string>> told(const Workbench& bench, const std::string& run,
                                                      const std::string& what) {
     std::map<std::string, std::vector<std::string>> frames;

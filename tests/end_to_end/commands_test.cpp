@@ -1,4 +1,4 @@
-// The other commands as a user meets them first: each does its work, and tells wrong use in one line.
+// The other commands as a user meets them first: each does its work, and reports wrong use in one line.
 
 #include "tests/end_to_end/one_line.h"
 

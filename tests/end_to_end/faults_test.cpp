@@ -128,7 +128,7 @@ TEST_CASE("a fault of the command line is one of the scenario, with the same evi
     CHECK(text_of(bench.out("table") / "faults.csv") == text_of(bench.out("words") / "faults.csv"));
     const auto& firings = a["faults"][0]["firings"];
     REQUIRE(firings.size() == 3);
-    // Each is in the trace where the evidence says.
+    // Each is in the trace where the evidence states.
     int found = 0;
     for (const Row& row : bench.csv("table", "trace.csv"))
         if (row.at("fault") == "drop") {

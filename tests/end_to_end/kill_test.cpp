@@ -1,5 +1,5 @@
 // kill -9 at any moment, of a node's process, of a Linux program, of the run itself: it ends at once, with
-// the victim's name, and leaves nothing but what it recorded. PUCKLOOP_KILLS says how many (12).
+// the victim's name, and leaves nothing but what it recorded. PUCKLOOP_KILLS sets how many (12).
 
 #include "base/random.h"
 #include "tests/end_to_end/one_line.h"

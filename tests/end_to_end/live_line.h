@@ -12,8 +12,8 @@ namespace puckloop::tests {
 /// False, with a warning, where the system has no pseudo terminals: the test is skipped.
 bool has_ptys();
 
-/// What the run, whose standard error is `err`, says where `end` is: "/dev/pts/3", or "4242" of TCP. Fails
-/// the test if it does not within 120 s.
+/// What the run, whose standard error is `err`, prints as the place of `end`: "/dev/pts/3", or "4242" of TCP.
+/// Fails the test if it does not within 120 s.
 std::string place_of(const std::filesystem::path& err, const std::string& end);
 
 class LiveLine {

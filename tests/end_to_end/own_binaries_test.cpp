@@ -1,6 +1,6 @@
 // The real firmware of the robot, unmodified, commanded by the project's own control program
 // (PUCKLOOP_IMAGES) and by ARGoS's real-robot program (PUCKLOOP_ARGOS: a folder with argos_epuck and
-// avoid.argos). PUCKLOOP_REPEATS says how often the latter is repeated (2).
+// avoid.argos). PUCKLOOP_REPEATS sets how often the latter is repeated (2).
 
 #include "tests/end_to_end/load.h"
 #include "tests/end_to_end/same_run.h"
@@ -73,7 +73,8 @@ TEST_CASE("the original firmware works with the project's own control program") 
     check_same_run(bench, "one", "many");
     const auto trace = bench.csv("one", "trace.csv");
     const Frames frames = frames_of(bytes_sent(trace, "robot0.uart", "robot0.linux"));
-    // A frame each 100 ms from just after 42 s to 52 s; then, asked to end, one that stops the wheels, and 'R'.
+    // A frame each 100 ms from just after 42 s to 52 s; then, asked to end, one that stops the wheels, and
+    // 'R'.
     CHECK(frames.normal >= 98);
     CHECK(frames.normal <= 101);
     CHECK(frames.reset == 1);

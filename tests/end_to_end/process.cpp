@@ -74,7 +74,7 @@ Process::Process(const std::vector<std::string>& words, const std::filesystem::p
         dup2(open(in.c_str(), O_RDONLY), STDIN_FILENO);
         dup2(open(out_.c_str(), flags, 0666), STDOUT_FILENO);
         dup2(open(err_.c_str(), flags, 0666), STDERR_FILENO);
-        // A test runner may have been told to ignore signals; the program under test gets a shell's.
+        // A test runner may have been set to ignore signals; the program under test gets a shell's.
         for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
             std::signal(number, SIG_DFL);
         execvp(arguments[0], arguments.data());

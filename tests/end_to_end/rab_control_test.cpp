@@ -34,7 +34,7 @@ std::string scenario(const std::string& duration, const std::vector<Robot>& robo
     return text;
 }
 
-/// Messages a second from `id` as the program's log tells, second by second.
+/// Messages a second from `id` as the program's log has them, second by second.
 std::vector<int> heard(const std::string& log, int id) {
     std::vector<int> counts;
     const std::regex line("messages a second:[^\n]*[ ,]" + std::to_string(id) + ": ([0-9]+)");

@@ -1,5 +1,5 @@
 #pragma once
-// Two runs are the same when nothing they recorded tells them apart.
+// Two runs are the same when nothing they recorded distinguishes them.
 
 #include "tests/end_to_end/workbench.h"
 

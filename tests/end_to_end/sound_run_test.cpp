@@ -80,7 +80,7 @@ std::string content(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The last volumes that a listener told.
+/// The last volumes that a listener reported.
 std::array<double, 3> volumes(const std::string& bytes) {
     REQUIRE(bytes.size() >= 12);
     const std::size_t first = bytes.size() / 6 * 6 - 6;
@@ -133,7 +133,7 @@ TEST_CASE("a robot's sound is read at others' microphones by the law of distance
 
 namespace {
 
-/// What the path of a robot with Demo.hex in the middle says.
+/// What the path of a robot with Demo.hex in the middle shows.
 struct Heard {
     double x = 0.0, y = 0.0, heading = 0.0;  ///< whole turns count
 };
@@ -235,7 +235,7 @@ TEST_CASE("Demo's FFT follows the tone of a loudspeaker in the world", "[sound][
     CHECK(heading(2500) < -0.15);
 }
 
-// A clap is noise that travels. Its program tells delays of whole samples apart, so directions to some 20
+// A clap is noise that travels. Its program distinguishes delays of whole samples, so directions to some 20
 // degrees. Steady noise as loud as one would first try is below its threshold (docs/sound.md).
 TEST_CASE("Demo turns to a clap of a loudspeaker, and hears no weak noise", "[sound][images]") {
     const auto firmware = outside("PUCKLOOP_IMAGES", "Demo.hex");

@@ -52,7 +52,7 @@ void check_ascii(Rig& rig, const std::string& version) {
     CHECK(help.size() > 600);
 }
 
-/// Tilt and sound: U tells volumes of 256 samples, whose range is 5.65 deviations.
+/// Tilt and sound: U prints volumes of 256 samples, whose range is 5.65 deviations.
 void check_tilt_and_sound(Rig& rig) {
     rig.set("acc_x", 2048 + 160);
     rig.run_for(0.05);

@@ -1,4 +1,4 @@
-// The bus master of the bench, against a slave that answers as it is told to.
+// The bus master of the bench, against a slave that answers as it is set to.
 
 #include "tools/exec/i2c_script_master.h"
 

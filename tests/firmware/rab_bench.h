@@ -30,7 +30,7 @@ struct SentFrame {
     std::string chips;
 };
 
-/// Chips without the dark ones at the end, which no edge tells.
+/// Chips without the dark ones at the end, which no edge shows.
 std::string lit_part(std::string chips);
 
 class RabBench {

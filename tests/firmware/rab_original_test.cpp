@@ -67,7 +67,7 @@ int shortest_gap(const std::string& image) {
     }
 }
 
-/// From a frame's last chip until register 0 tells of it, s; to 50 us.
+/// From a frame's last chip until register 0 reports it, s; to 50 us.
 double time_to_message(const std::string& image) {
     for (double wait = 0.0002;; wait += 50e-6) {
         RabBench bench(image);
@@ -79,7 +79,7 @@ double time_to_message(const std::string& image) {
     }
 }
 
-/// Longest time the board held the bus while it was told to send.
+/// Longest time the board held the bus while it was asked to send.
 double stretch(const std::string& image, int size) {
     RabBench bench(image);
     bench.write(kReady, {21, static_cast<std::uint8_t>(size)});

@@ -1,6 +1,6 @@
 // Every error flag of each UART is raised by the matching condition on the line and by no other: conditions,
 // words, rates and the driver's reads are drawn at random, and the whole status is compared at every step
-// with what the data sheet says a receiver holds.
+// with what the data sheet states that a receiver holds.
 
 #include "base/random.h"
 #include "tests/framing/avr_usart_bench.h"

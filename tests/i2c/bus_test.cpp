@@ -37,7 +37,7 @@ class Bench {
         give({start, port, phase});
     }
     void give(const Message& message) { inbox_.push_back(message); }
-    /// Everything that counts before `time`; the node may tell it earlier.
+    /// Everything that counts before `time`; the node may send it earlier.
     std::vector<Message> until(Time time) {
         std::stable_sort(inbox_.begin(), inbox_.end(),
                          [](const Message& a, const Message& b) { return a.time < b.time; });
@@ -200,7 +200,7 @@ TEST_CASE("a board behind a port answers in its own time, the master sees the st
     auto out = bench.until(kMillisecond + 8 * kPeriod);
     CHECK(only(out).kind == I2cPhaseKind::Start);
     CHECK(out[0].port == kRab);
-    CHECK(out[0].time == kMillisecond + kPeriod / 2);  // told apart from other masters
+    CHECK(out[0].time == kMillisecond + kPeriod / 2);  // distinguished from other masters
     const auto answer = [&](I2cPhaseKind kind, std::uint8_t byte, bool ack, Time time) {
         bench.give({time, kRab, I2cPhase{.kind = kind, .byte = byte, .ack = ack}});
         return bench.until(time + 5 * kPeriod);

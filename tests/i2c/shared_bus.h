@@ -12,13 +12,13 @@
 
 namespace puckloop::tests {
 
-/// What a master is to do, and when it is told to.
+/// What a master is to do, and when it is asked to.
 struct Task {
     cosim::Time time = 0;
     linuxboard::I2cTransfer transfer;
 };
 
-/// A board with 256 registers behind a pointer, that answers as late as it is told to.
+/// A board with 256 registers behind a pointer, that answers as late as it is set to.
 struct Board {
     std::uint8_t address = 0x20;
     std::uint8_t fill = 0x5A;                     ///< what its registers hold at first

@@ -88,7 +88,7 @@ TEST_CASE("of two masters that start together the lower address byte goes on") {
     REQUIRE(bus.pic_results.size() == 1);
     CHECK(bus.pic_results[0].data == "\x5A");
     REQUIRE(bus.linux_results.size() == 1);
-    CHECK(bus.linux_results[0].error == EAGAIN);  // arbitration lost, as i2c-omap says it
+    CHECK(bus.linux_results[0].error == EAGAIN);  // arbitration lost, as i2c-omap reports it
 }
 
 TEST_CASE("a board that is not there or not yet on") {

@@ -16,7 +16,7 @@ using images::Row;
 
 namespace {
 
-/// What became of a row: "seen", and whether it is what the source says.
+/// What became of a row: "seen", and whether it is what the source states.
 struct Result {
     std::string seen;
     bool works = false;

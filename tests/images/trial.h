@@ -48,13 +48,13 @@ class Trial {
 
 struct Row {
     std::string image, at;  ///< selector or command
-    std::string says;       ///< what the source says
+    std::string says;       ///< what the source states
     Trial::Setup setup;
     /// What was seen, in words that hold for each run; throws Wrong where it was something else.
     std::function<std::string(Trial&)> see;
 };
 
-/// It does something else than its source says.
+/// It does something else than its source states.
 struct Wrong {
     std::string seen;
 };

@@ -1,4 +1,5 @@
-// Faults of IRcom's words: what receivers read of each, whom a fault leaves alone, what it says it did.
+// Faults of IRcom's words: what receivers read of each, whom a fault leaves alone, what it reports that it
+// did.
 
 #include "base/error.h"
 #include "base/random.h"
@@ -70,7 +71,7 @@ std::vector<Message> light_of(const std::vector<Word>& words) {
     return messages;
 }
 
-/// What robots read of words, cut as `step` says.
+/// What robots read of words, cut as `step` states.
 Heard listen(const std::vector<Word>& words, std::vector<cosim::FaultSpec> faults,
              Time step = 700 * kMillisecond) {
     IrcomNode node(three(), {"ircom", kIds, "", false, carried(std::move(faults))});

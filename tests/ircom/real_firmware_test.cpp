@@ -167,7 +167,7 @@ TEST_CASE("a robot understands neither of two beside it that talk at once", "[sl
     NEEDS_IMAGES();
     RandomStream random(22, "collision");
     auto description = world();
-    // Both in front of the same sensor: one on either side would be told apart.
+    // Both in front of the same sensor: one on either side would be distinguished.
     const double aside = std::atan2(0.036, 0.15);
     add_robot(description, "a", -0.15, 0.036, -aside);
     add_robot(description, "b", 0, 0, std::numbers::pi / 2);

@@ -1,5 +1,5 @@
 // Folders depend downward only: what a file includes lies in its own folder or in one further up in this
-// list. docs/architecture.md says what each folder is.
+// list. docs/architecture.md states what each folder is.
 
 #include <catch2/catch.hpp>
 

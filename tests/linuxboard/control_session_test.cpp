@@ -12,7 +12,7 @@ using puckloop::protocols::EpuckActuators;
 
 namespace {
 
-/// Commands that tell by themselves whether a record arrived unshifted.
+/// Commands that show by themselves whether a record arrived unshifted.
 class Signature : public Behaviour {
   public:
     Actuators step(const Sensors&, double) override {

@@ -90,7 +90,7 @@ TEST_CASE("random sensor records are refused, shifted ones mostly") {
         random_accepted += why_implausible(decode_sensors(noise)).empty();
     }
     CHECK(random_accepted == 0);
-    // Shifts by whole fields can look right (measured: 17 %); length and timing have to tell those.
+    // Shifts by whole fields can look right (measured: 17 %); length and timing have to show those.
     CHECK(shifted == 500 * 71);
     CHECK(shifted_accepted < shifted / 5);
 }

@@ -1,4 +1,4 @@
-// The booth of a TAM: its beams against a plain look along many lines, its walls, what its node says.
+// The booth of a TAM: its beams against a plain look along many lines, its walls, what its node sends.
 
 #include "base/error.h"
 #include "base/random.h"

@@ -1,5 +1,5 @@
 // Faults of the light between range-and-bearing boards: chips, edges, weak parts, occlusion, ambient bursts;
-// each hits what it is for and nothing else, and says so.
+// each hits what it is for and nothing else, and reports it.
 
 #include "base/error.h"
 #include "physics/ir/ir_node.h"

@@ -37,7 +37,7 @@ World hearing_world(std::vector<Robot> robots) {
     return world;
 }
 
-/// Everything that the world says of sound, by port and signal, in `slice` grants.
+/// Everything that the world sends of sound, by port and signal, in `slice` grants.
 using Heard = std::map<std::pair<int, int>, std::vector<std::pair<Time, double>>>;
 Heard run(const World& world, std::vector<Message> inbox, Time duration, Time slice) {
     WorldNode node(world);

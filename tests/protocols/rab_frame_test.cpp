@@ -1,4 +1,5 @@
-// The range-and-bearing frame: the real board's waveforms, round trips, and what a reader says of bad ones.
+// The range-and-bearing frame: the real board's waveforms, round trips, and what a reader reports of bad
+// ones.
 
 #include "base/error.h"
 #include "base/random.h"

@@ -1,4 +1,4 @@
-// The board as a node: what leaves does not depend on how grants are cut, EOTs hold, the log tells
+// The board as a node: what leaves does not depend on how grants are cut, EOTs hold, the log states
 // what matters. Runs a small program of its own.
 
 #include "base/random.h"

@@ -48,8 +48,8 @@ TEST_CASE("four hexadecimal digits on UART2 are sent on all emitters") {
     REQUIRE(rig.bursts(7).size() == 1);
     CHECK(rig.bursts(7)[0].chips == rab::visible(encode_rab(16, 0xA5C3)));
     CHECK_THAT(rig.bench().take_text(2), Catch::Contains("Received: a5c3\n\r"));
-    // The sheet says that any other character clears the entry. It does not: it becomes the digit -1 (SETM at
-    // 0x20C0), and only digits above 15 clear (BRA GT at 0x20C8, signed). 1, 2, -1, 1 add up to 0x11F1.
+    // The sheet states that any other character clears the entry. It does not: it becomes the digit -1 (SETM
+    // at 0x20C0), and only digits above 15 clear (BRA GT at 0x20C8, signed). 1, 2, -1, 1 add up to 0x11F1.
     rig.bench().send(2, {'1', '2', 'x', '1'});
     rig.run_for(0.03);
     CHECK_THAT(rig.bench().take_text(2), Catch::Contains("Received: 11f1\n\r"));

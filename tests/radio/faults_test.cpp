@@ -1,4 +1,5 @@
-// Faults of the air between modules: what each does to frames, whom it leaves alone, what it says it did.
+// Faults of the air between modules: what each does to frames, whom it leaves alone, what it reports that it
+// did.
 
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_table.h"

@@ -14,7 +14,7 @@ namespace {
 const std::string kArena = "[run]\nduration = \"5 s\"\n[arena]\nsize = [\"1 m\", \"80 cm\"]\n";
 const std::string kRobot = "[[robot]]\nposition = [\"0 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"x.hex\"\n";
 
-/// What read_scenario says of a text, from "line" on.
+/// What read_scenario reports of a text, from "line" on.
 std::string problem_of(const std::string& text) {
     const TemporaryFile file(text);
     try {

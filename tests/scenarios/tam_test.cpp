@@ -16,7 +16,7 @@ namespace {
 const std::string kArena = "[run]\nduration = \"5 s\"\n[arena]\nsize = [\"1 m\", \"80 cm\"]\n";
 const std::string kTam = "[[tam]]\nposition = [\"0 m\", \"10 cm\"]\n";
 
-/// What read_scenario says of a TAM with these further keys, the first of them on line 7.
+/// What read_scenario reports of a TAM with these further keys, the first of them on line 7.
 std::string problem_of(const std::string& keys) {
     const TemporaryFile file(kArena + kTam + keys);
     try {

@@ -1,4 +1,4 @@
-// What a snapshot cannot go on with is refused, in one line that says why.
+// What a snapshot cannot go on with is refused, in one line that states why.
 
 #include "tests/end_to_end/one_line.h"
 #include "tests/end_to_end/workbench.h"

@@ -1,4 +1,5 @@
-// Runs of small nodes, saved at drawn instants and gone on with: nothing tells them from the whole run.
+// Runs of small nodes, saved at drawn instants and gone on with: nothing distinguishes them from the whole
+// run.
 
 #include "base/random.h"
 #include "cosim/resume/run_snapshot.h"

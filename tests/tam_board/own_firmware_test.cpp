@@ -39,7 +39,7 @@ TEST_CASE("the own TAM firmware joins the network of its switches, finds the coo
     CHECK(ms(reports[1].first - reports[0].first) == Approx(10'000).epsilon(0.001));
     CHECK(says(reports[0].second, 0, 0, 0, false, 0));
     const int millivolts = reports[1].second[5] | reports[1].second[6] << 8;
-    CHECK(millivolts == Approx(3700).margin(20));  // the original's 33 mV a count says 3795
+    CHECK(millivolts == Approx(3700).margin(20));  // the original's 33 mV a count gives 3795
     CHECK(booth.rig.board.signal(kNetworkLed) == 1.0);
     CHECK(booth.console.find("coordinator found") != std::string::npos);
     CHECK(std::get<XBeeTx>(booth.sent[2].second).to == 0x0013A200408A3107);

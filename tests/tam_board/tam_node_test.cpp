@@ -198,7 +198,7 @@ TEST_CASE("nothing is sent before the time that the node states") {
                 REQUIRE(message.time >= earliest[message.port]);
             now = until;
         }
-        CHECK(later_than_now > 1000);  // it sleeps most of the time, and says so
+        CHECK(later_than_now > 1000);  // it sleeps most of the time, and reports it
     }
 }
 

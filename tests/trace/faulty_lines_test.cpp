@@ -24,7 +24,7 @@ struct Found {
     std::string what;   // "break", "framing error", "wrong parity", "no character"
 };
 
-/// What `trace decode` says of the characters of one sender.
+/// What `trace decode` prints of the characters of one sender.
 std::vector<Found> ours(const std::string& out, const std::string& from) {
     std::vector<Found> found;
     const Called called =
@@ -139,9 +139,8 @@ TEST_CASE("sigrok and tshark find the errors of a line with every kind of fault 
     CHECK(breaks + framing >= 3);
     if (installed("sigrok-cli")) {
         const std::vector<Found> theirs = sigroks(sr, "robot0.uart/robot0.pic", kRate);
-        // sigrok marks the stop bit, or where a break began; of a start bit that is too short it says that it
-        // is a wrong frame.
-        // An inverted line is in the trace frame by frame: between them it is not drawn.
+        // sigrok marks the stop bit, or where a break began; of a start bit that is too short it reports that
+        // it is a wrong frame. An inverted line is in the trace frame by frame: between them it is not drawn.
         const auto is_inverted = [&](double time) { return time >= inverted && time < inverted + 0.06; };
         for (const Found& one : mine) {
             if (is_inverted(one.time)) continue;

@@ -1,4 +1,4 @@
-// A run of real boards, exported: sigrok-cli and tshark read what the trace says, byte for byte.
+// A run of real boards, exported: sigrok-cli and tshark read what the trace holds, byte for byte.
 
 #include "foreign_tools.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// What the tests of exported traces share: traces drawn at random, programs started, and what a trace says by
-// the plainest reading of its rows.
+// What the tests of exported traces share: traces drawn at random, programs started, and what a trace holds
+// by the plainest reading of its rows.
 
 #include "cosim/trace/trace_row.h"
 
@@ -21,7 +21,7 @@ struct Called {
 Called shell(const std::string& command);
 Called puckloop(const std::string& arguments);
 
-/// True if the program is installed; says so on standard error if not.
+/// True if the program is installed; prints it on standard error if not.
 bool installed(const std::string& program);
 
 std::vector<std::string> lines_of(const std::string& text);

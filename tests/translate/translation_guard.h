@@ -1,5 +1,5 @@
 #pragma once
-// Cores made while it lives translate as it says.
+// Cores made while it lives translate as it states.
 
 #include "emu/chip/translation_switch.h"
 

@@ -24,7 +24,7 @@ class Terminal : public Host {
     Terminal() : Host(transparent()) { boot(); }
 
     void type(const std::string& text) { say_bytes(XBeeBytes(text.begin(), text.end())); }
-    /// What it says within `time`.
+    /// What it sends within `time`.
     std::string answer(Time time = 60 * kMs) {
         bytes.clear();
         run(time);

@@ -1,5 +1,5 @@
 #pragma once
-// A radio module with a host at its serial line: what the host says goes in as bytes at 9600 baud, what the
+// A radio module with a host at its serial line: what the host sends goes in as bytes at 9600 baud, what the
 // module answers comes out as frames with their times. The air is the test's own.
 
 #include "emu/xbee/module_node.h"
@@ -62,7 +62,7 @@ class Host {
     }
     void fate(const radio::RadioOutcome& outcome) { hear_octets(radio::encode(outcome), 0); }
 
-    /// Runs on for `time` in steps, and checks what the node says of its future.
+    /// Runs on for `time` in steps, and checks what the node states of its future.
     void run(Time time, Time step = cosim::kNever) {
         const Time until = now_ + time;
         while (now_ < until) {

@@ -1,5 +1,5 @@
 #pragma once
-// The cases of `puckloop bench`. docs/bench.md says what each figure means.
+// The cases of `puckloop bench`. docs/bench.md states what each figure means.
 
 #include "tools/bench/figure.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What else the machine did while something was measured: a figure taken beside other work says so.
+// What else the machine did while something was measured: a figure taken beside other work states it.
 
 #include <string>
 

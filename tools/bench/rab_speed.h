@@ -7,7 +7,7 @@ namespace puckloop::tools {
 
 enum class RabWork {
     Idle,    ///< listens to silence
-    Sending  ///< told over UART2 to send 16 bits every 10 ms: on the air half of the time
+    Sending  ///< asked over UART2 to send 16 bits every 10 ms: on the air half of the time
 };
 
 /// Times real time, after the firmware's start-up, measured for about `wall_s` seconds. Throws InputError if

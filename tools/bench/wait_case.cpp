@@ -1,4 +1,4 @@
-// The case "wait" of `puckloop bench`: images on the main board that wait for a partner who says nothing.
+// The case "wait" of `puckloop bench`: images on the main board that wait for a partner who sends nothing.
 
 #include "base/error.h"
 #include "tools/bench/case_kit.h"

@@ -13,9 +13,9 @@ namespace puckloop::debug {
 class Variables {
   public:
     Variables() = default;
-    /// `sizes`: bytes by symbol, where the image says (image::symbol_sizes()); others count as one byte. The
-    /// linker's own end of the variables (_end, __bss_end and the like of avr-gcc) counts where the stack
-    /// comes from above. Symbols outside RAM are left out.
+    /// `sizes`: bytes by symbol, where the image states them (image::symbol_sizes()); others count as one
+    /// byte. The linker's own end of the variables (_end, __bss_end and the like of avr-gcc) counts where the
+    /// stack comes from above. Symbols outside RAM are left out.
     Variables(const std::map<std::string, image::Symbol>& symbols,
               const std::map<std::string, std::uint32_t>& sizes, std::uint32_t ram_start,
               std::uint32_t ram_end, bool stack_from_above);

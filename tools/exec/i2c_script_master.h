@@ -5,7 +5,7 @@
 // repeated START take one. The master never gives up on a byte that is not acknowledged: it sends STOP and
 // goes on with the next line.
 //
-// Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus says 25 to 35 ms,
+// Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus states 25 to 35 ms,
 // Linux drivers wait up to a second; the firmware known here holds it for 2 ms). The script then ends.
 
 #include "tools/exec/logs.h"

@@ -65,7 +65,7 @@ UartSpec spec_of(std::string_view option, const std::optional<std::string>& text
     return text ? parse_uart_spec(option, *text) : UartSpec{};
 }
 
-/// The script is checked even where it cannot be used, so that its own mistakes are told first.
+/// The script is checked even where it cannot be used, so that its own mistakes are reported first.
 std::vector<I2cScriptLine> i2c_script(const std::string& text, const Target& target) {
     if (text.empty()) return {};
     if (!text.starts_with(kScript) || text.size() == kScript.size())

@@ -43,7 +43,7 @@ tools::RunRequest request_of(const Campaign& campaign) {
     return request;
 }
 
-/// Of a node that could not write: what it says is no outcome.
+/// Of a node that could not write: what it reports is no outcome.
 bool names_disk(const std::string& text) {
     constexpr std::array kErrors{ENOSPC, EDQUOT};
     return std::any_of(kErrors.begin(), kErrors.end(),

@@ -37,7 +37,7 @@ double number(std::string_view text) {
     return value;
 }
 
-/// What a fault put on a line by itself says nothing of the node whose end it is on.
+/// What a fault put on a line by itself shows nothing of the node whose end it is on.
 bool nobody_sent(std::string_view fault) {
     return fault == "break" || fault == "false_start" || fault == "loopback";
 }

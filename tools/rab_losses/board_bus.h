@@ -1,5 +1,5 @@
 #pragma once
-// What a trace says of one range-and-bearing board's I2C traffic: registers read and written, and when the
+// What a trace has of one range-and-bearing board's I2C traffic: registers read and written, and when the
 // board's firmware served the bus and did nothing else. Registers: the e-RandB's (docs/rab.md).
 
 #include "cosim/core/time.h"

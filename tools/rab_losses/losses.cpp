@@ -100,7 +100,7 @@ std::uint64_t deliver(std::vector<Fate*>& fates, const std::vector<Poll>& polls,
     return unexplained;
 }
 
-/// Ten messages fit. Frames with the same bytes cannot be told apart, so two of them may be mistaken.
+/// Ten messages fit. Frames with the same bytes cannot be distinguished, so two of them may be mistaken.
 bool queue_full(const std::vector<Fate*>& fates, std::size_t index) {
     constexpr std::size_t kQueue = 10, kDoubt = 2;
     std::size_t waiting = 0;

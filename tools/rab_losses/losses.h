@@ -1,8 +1,8 @@
 #pragma once
 // Which infra-red frames became messages, and why the others did not.
 //
-// The medium's ir.csv says which frames were on the air and how each board could hear them; the register
-// traffic in trace.csv says which messages the hosts fetched. A message belongs to the earliest frame that
+// The medium's ir.csv lists which frames were on the air and how each board could hear them; the register
+// traffic in trace.csv lists which messages the hosts fetched. A message belongs to the earliest frame that
 // could be heard, carried its bytes and ended within the time that the firmware needs before the poll. For a
 // frame without a message the conditions it met are counted; the first of the list that applies is its cause.
 

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kLookEvery = 200;  // ms, whether the user has interrupted a wait
 
-/// A pipe without a reader says so by EPIPE only, in this thread; children keep their signals.
+/// A pipe without a reader reports it by EPIPE only, in this thread; children keep their signals.
 class NoSigpipe {
   public:
     NoSigpipe() {

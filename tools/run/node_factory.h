@@ -10,7 +10,7 @@
 
 namespace puckloop::tools {
 
-/// A "pic", "rab" or "tam" at power-up, whatever the description says of states.
+/// A "pic", "rab" or "tam" at power-up, whatever the description states of states.
 std::unique_ptr<cosim::StatefulNode> make_board(const nlohmann::json& spec);
 
 /// `json` has "kind": "pic", "rab", "tam", "linux", "world", "ir", "i2c_bus", "outside", "xbee" or "ether",

@@ -31,7 +31,7 @@ struct RunRequest {
     std::filesystem::path from;        ///< the snapshot that the run goes on from; empty: it begins anew
     std::shared_ptr<const cosim::RunSnapshot> snapshot;  ///< what `from` holds
     bool same_origin = false;  ///< the snapshot is of this very run: nothing is compared
-    /// File of the snapshot at a time, if not as `save` says.
+    /// File of the snapshot at a time, if not as `save` states.
     std::function<std::filesystem::path(double)> save_name{};
     bool cache = false;  ///< boots are taken from the user's cache and kept there
     bool in_process = false;

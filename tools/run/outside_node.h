@@ -38,7 +38,7 @@ class OutsideNode : public cosim::Node {
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
-    /// Never: what a live end says in answer is covered by its EOT, a script does not answer.
+    /// Never: what a live end sends in answer is covered by its EOT, a script does not answer.
     cosim::Time lookahead(cosim::PortIndex /*port*/) const override { return cosim::kNever; }
     std::string finish() override;
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a run says in the host's log (base/log.h): what was started where, how fast it goes, why it ended, and
-// how long each phase took.
+// What a run writes in the host's log (base/log.h): what was started where, how fast it goes, why it ended,
+// and how long each phase took.
 
 #include "cosim/conductor.h"
 #include "tools/run/setup.h"

@@ -1,5 +1,5 @@
 #pragma once
-// One line on the terminal that tells how far a run is; nothing in a pipe.
+// One line on the terminal that shows how far a run is; nothing in a pipe.
 
 #include "cosim/conductor.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-// What stood on a CAN bus, from the rows of a trace: the bus tells the sender of each frame how it ended.
+// What stood on a CAN bus, from the rows of a trace: the bus reports to the sender of each frame how it
+// ended.
 //
 // Of a frame that failed the bits up to the error are the sender's; the error flag is drawn as six dominant
 // bits if the sender was error active. Deviation: longer flags, of several controllers one after the other,
@@ -33,7 +34,7 @@ struct CanOnBus {
     std::vector<std::uint8_t> socketcan() const;
 };
 
-/// nullopt: the row is not what the sender of a frame is told of it.
+/// nullopt: the row is not what the sender of a frame gets of it.
 std::optional<CanOnBus> can_on_bus(const cosim::TraceRow& row);
 
 }  // namespace puckloop::tools

@@ -1,4 +1,4 @@
-// CAN frames, once each, as their senders were told of them.
+// CAN frames, once each, as they were reported to their senders.
 
 #include "tools/trace/decoders.h"
 

@@ -22,7 +22,7 @@ class LineReceiver {
     /// start bit is too short; several of one that is much slower than the receiver.
     std::vector<protocols::ReceivedCharacter> take(const cosim::TraceRow& row, const cosim::UartFrame& frame);
 
-    /// Until a frame says otherwise.
+    /// Until a frame states otherwise.
     void assume(const protocols::UartReceiver& receiver) {
         if (!receiver_) receiver_ = receiver;
     }
@@ -32,7 +32,7 @@ class LineReceiver {
     cosim::Time ready_ = 0;
 };
 
-/// How a receiver of this sender is set; nothing for a frame that says nothing of it.
+/// How a receiver of this sender is set; nothing for a frame that states nothing of it.
 std::optional<protocols::UartReceiver> setting_of(const cosim::TraceRow& row, const cosim::UartFrame& frame);
 
 /// "break", "framing error", "wrong parity"; empty: nothing is wrong.

@@ -3,7 +3,7 @@
 // 8272, "Analog Comparator".
 //
 // Deviations
-//  1. The inputs are looked at when the board says that they changed and when a register is read: the
+//  1. The inputs are looked at when the board reports that they changed and when a register is read: the
 //  comparator has no
 //     hysteresis, and its synchronising delay of 1 to 2 clocks is left out.
 

@@ -34,7 +34,7 @@ class Ports {
 
     /// A module drives the pin's value in place of PORTxn; the direction stays DDxn's.
     void override_value(Pin pin, bool level, PinUser user);
-    /// A module makes the pin an output or an input, whatever DDxn says; its value is PORTxn's unless
+    /// A module makes the pin an output or an input, whatever DDxn states; its value is PORTxn's unless
     /// overridden.
     void override_direction(Pin pin, bool output);
     /// Back to DDxn and PORTxn.

@@ -5,7 +5,7 @@
 // Deviations
 //  1. Erasing and writing a page take 3.7 ms, the data sheet's minimum.
 //  2. A byte that boot lock bits keep from being read is 0xFF, a page that they protect stays as it is: the
-//     data sheet only says that it is not allowed.
+//     data sheet only states that it is not allowed.
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"

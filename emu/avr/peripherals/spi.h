@@ -31,7 +31,7 @@ class Spi {
         bool status_read = false;  ///< SPSR was read with SPIF or WCOL set: the next access to SPDR clears
                                    ///< them
         std::uint8_t received = 0;
-        std::uint8_t shift = 0;  ///< next out at the end that DORD says, what came in at the other
+        std::uint8_t shift = 0;  ///< next out at the end that DORD states, what came in at the other
         std::uint8_t sent = 0;   ///< the byte that a master sends
         bool incoming = false;   ///< the bit that was sampled, on its way into `shift`
         std::uint8_t edges = 0;  ///< of SCK in this byte, 0..16

@@ -251,7 +251,7 @@ void Usart::receive_due(void* owner, Cycle due) {
     static_cast<Usart*>(owner)->sample(due);
 }
 
-// The FIFO holds two characters, the shift register a third; a fourth takes the third's place, and says so
+// The FIFO holds two characters, the shift register a third; a fourth takes the third's place, and reports it
 // (DOR).
 void Usart::deliver(const chip::UartReceiver::Character& character) {
     ++counters_.received;

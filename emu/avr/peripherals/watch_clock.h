@@ -4,7 +4,7 @@
 // "Asynchronous Operation of Timer/Counter2".
 //
 // Deviations
-//  1. The crystal oscillates from the start (the data sheet says up to a second) and has no error; it stops
+//  1. The crystal oscillates from the start (the data sheet states up to a second) and has no error; it stops
 //  neither in power-down nor in standby, only what it clocks does.
 //  2. The CPU sees each edge three of its clocks late; the compare pins follow then, not with the edge.
 

@@ -32,7 +32,7 @@ class BoardAccess {
     virtual bool powered() const { return true; }
     /// The battery's voltage is lower by so much.
     virtual void set_sag(double /*volts*/) {}
-    /// The battery has this voltage, before any sag, whatever the world says; nullopt: what the world says.
+    /// The battery has this voltage, before any sag, whatever the world sends; nullopt: what the world sends.
     virtual void set_battery(std::optional<double> /*volts*/) {}
     /// A burst of ambient light on each proximity sensor, or light barrier, 0 to 1.
     virtual void set_ambient(const AmbientShares& /*shares*/) {}

@@ -12,7 +12,7 @@ namespace puckloop::dspic {
 
 struct Operand {
     enum class Shape : std::uint8_t {
-        Register,        ///< w3 and [w3], [w3++] ...: `mode` tells
+        Register,        ///< w3 and [w3], [w3++] ...: `mode` decides
         RegisterOffset,  ///< [w3+w4]
         LiteralOffset,   ///< [w3+8]: `expression` is the signed offset
         Stepped,         ///< [w8]+=2: `step`

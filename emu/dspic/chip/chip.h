@@ -1,6 +1,6 @@
 #pragma once
 // A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in
-// silicon. It knows no board: the board implements Pins, and tells the chip what arrives from outside.
+// silicon. It knows no board: the board implements Pins, and gives the chip what arrives from outside.
 
 #include "base/archive.h"
 #include "base/checkpoint.h"
@@ -37,7 +37,7 @@ class SfrSpace;
 struct ChipOptions {
     double crystal_hertz = 7'372'800.0;  ///< what the board solders to OSC1/OSC2
     double ppm = 0.0;                    ///< the crystal's error, + is fast
-    /// 30F: configuration word FOSC that is in force whatever the image says (a bootloader's words stay on
+    /// 30F: configuration word FOSC that is in force whatever the image states (a bootloader's words stay on
     /// the part).
     std::optional<std::uint16_t> fosc{};
     Errata errata{};  ///< of the 30F; the 33FJ has none of them
@@ -76,7 +76,7 @@ struct UnmodelledTouch {
         archive(cycle, name, address, pc, write);
     }
 };
-/// Something the program did that the model takes differently from silicon, told once each.
+/// Something the program did that the model takes differently from silicon, reported once each.
 struct ChipWarning {
     Cycle cycle = 0;
     std::string text;
@@ -136,7 +136,7 @@ class Chip {
     void mclr();
 
     /// Runs everything that starts strictly before `until`. Returns early at a stop address and where
-    /// pause_at() says so. An
+    /// pause_at() requires it. An
     /// instruction that starts at time s has seen everything handed in after run_until(t), t <= s.
     void run_until(cosim::Time until);
     /// From within a call of Pins: run_until() ends at `time`, or at the end of the present instruction where
@@ -168,7 +168,7 @@ class Chip {
     /// Pins::supply() is another one now.
     void supply_changed();
 
-    /// Pins::next_edge() says something else for edges from cycle `at` on. Allowed within calls of Pins.
+    /// Pins::next_edge() gives something else for edges from cycle `at` on. Allowed within calls of Pins.
     void edges_moved(Cycle at);
 
     /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before

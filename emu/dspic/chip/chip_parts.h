@@ -86,7 +86,7 @@ struct Chip::Parts {
     ClockConfiguration clock_words() const;
     /// Registers and modules at a reset; the core does its own and RCON.
     void reset(ResetCause cause);
-    /// Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit says so.
+    /// Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit is set.
     void set_power(PowerMode mode);
 
     Uart& uart(int unit) { return uarts[static_cast<std::size_t>(unit - 1)]; }

@@ -89,7 +89,7 @@ class Core {
     /// Busy-wait loops are skipped without changing anything observable. On from the start.
     void set_skip_idle(bool on);
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
-    /// default as emu/chip/translation_switch.h says.
+    /// default as emu/chip/translation_switch.h states.
     void set_translate(bool on);
     /// Instructions do what these say; none from the start.
     void set_errata(const Errata& errata);
@@ -98,7 +98,7 @@ class Core {
     void set_instrument(chip::Instrument* instrument, bool accesses = false);
     /// Keeps the CPU from executing until `cycle` (flash programming, oscillator start-up); events go on.
     void stall_until(Cycle cycle);
-    /// In reset until told otherwise: nothing is executed, the watchdog stands. Resets pass.
+    /// In reset until set otherwise: nothing is executed, the watchdog stands. Resets pass.
     void hold(bool on);
     /// A reset as soon as what is under way allows; from within events.
     void request_reset(ResetCause cause);

@@ -1,5 +1,5 @@
 #pragma once
-// The interrupt controller: IFS, IEC, IPC, INTCON1/2 and the trap flags. It says which source is first in
+// The interrupt controller: IFS, IEC, IPC, INTCON1/2 and the trap flags. It decides which source is first in
 // line; the core decides when to take it (emu/dspic/core/core.h). Source: dsPIC30F family reference manual,
 // "Interrupts" (DS70053), and the vector tables of the parts. Deviations:
 //   1. soft traps are sampled like hard ones, at the next instruction boundary.
@@ -14,7 +14,7 @@
 
 namespace puckloop::dspic {
 
-/// Trap sources. The number is the vector; trap_flag() tells the bit of INTCON1.
+/// Trap sources. The number is the vector; trap_flag() gives the bit of INTCON1.
 enum class Trap : std::uint8_t {
     OscillatorFail = 1,
     AddressError = 2,
@@ -92,7 +92,7 @@ class InterruptController {
     Line& line() { return line_; }
     /// first() is a user interrupt, and no other source is flagged and enabled.
     bool waits_alone() const;
-    /// Clears the flag of first(), which waits alone; the listener need not be told.
+    /// Clears the flag of first(), which waits alone; the listener need not be called.
     void serve_alone();
     bool nesting_disabled() const;
     bool alternate_table() const;

@@ -116,7 +116,7 @@ struct Machine {
     bool held = false;          ///< in reset
     double wake_seconds = 0.0;  ///< from what ends Sleep to the first instruction
     Cycle wake_end = kNoCycle;  ///< the oscillator starts, until then
-    double cycle_rate = 0.0;    ///< 0: not told yet
+    double cycle_rate = 0.0;    ///< 0: not set yet
     struct Doze {
         bool on = false;        ///< CLKDIV<DOZEN>
         bool recovers = false;  ///< CLKDIV<ROI>

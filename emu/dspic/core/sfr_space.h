@@ -75,7 +75,7 @@ class SfrSpace {
     Plain& plain() { return plain_; }
     /// Changes whenever a word's kind may have.
     std::uint32_t layout_changes() const { return layout_changes_; }
-    /// A hooked word whose model says by Plain::until how long nothing happens at a read.
+    /// A hooked word whose model states by Plain::until how long nothing happens at a read.
     void set_plain_kind(std::uint16_t address, std::uint8_t kind) {
         words_[address >> 1].plain_kind = kind;
         plain_.kind[address >> 1] = kind;

@@ -1,6 +1,6 @@
 #pragma once
-// The domain of the loop walk (core/execute/words.h says what a domain is): a value is v + step * n after n
-// iterations of the loop, and holds for every n up to a bound that each use may lower. Memory and registers
+// The domain of the loop walk (core/execute/words.h defines what a domain is): a value is v + step * n after
+// n iterations of the loop, and holds for every n up to a bound that each use may lower. Memory and registers
 // are cells; a register of a module is a constant that the plan polls. What cannot be followed ends the walk.
 
 #include "emu/dspic/fast/followed.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What the domains of this folder share (core/execute/words.h says what a domain is). They follow
+// What the domains of this folder share (core/execute/words.h defines what a domain is). They follow
 // instructions without executing them, each with its own idea of a value; how an operand is reached through
 // registers, pointers and memory, and where execution goes on, is the same for all.
 //

@@ -256,7 +256,7 @@ void Adc12::note_quiet() {
 }
 
 // Automatic groups need one event, at the interrupt: all before is made up for by catch_up(), which
-// everything calls that could tell the difference.
+// everything calls that could see the difference.
 void Adc12::plan() {
     note_quiet();
     if (!state_.timed) {

@@ -19,7 +19,7 @@
 namespace puckloop::dspic {
 
 /// An automatic group of conversions has one event, its interrupt. What lies before is made up for by
-/// catch_up(), in order and with its true times, before anything can tell the difference: a read or write
+/// catch_up(), in order and with its true times, before anything can see the difference: a read or write
 /// of a register, a change of the pins by the chip, or the end of the chip's grant, after which the outside
 /// may change.
 class Adc12 {

@@ -1,5 +1,5 @@
 #pragma once
-// What the clock models of both families share: the keys in front of OSCCON, and how a new rate is told.
+// What the clock models of both families share: the keys in front of OSCCON, and how a new rate is reported.
 
 #include "cosim/core/clock.h"
 #include "emu/dspic/peripherals/surroundings.h"

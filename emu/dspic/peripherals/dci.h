@@ -10,7 +10,7 @@
 // use: each enabled slot takes the next, and after the last one both sets change places with their shadows
 // (DCIIF).
 //
-// Slave: CSCKD = 1 takes the bit clock of Pins::dci_master(), whatever BCG says, COFSD = 1 its frame syncs.
+// Slave: CSCKD = 1 takes the bit clock of Pins::dci_master(), whatever BCG holds, COFSD = 1 its frame syncs.
 // A frame's data begin with the sync or a bit behind it (DJST); a sync while a frame is under way is not
 // heard, and behind a frame shorter than the codec's nothing moves until the next. With the codec's bit clock
 // the module runs on in Sleep. The last two rules are taken from other parts of the family: the manual's text

@@ -11,7 +11,7 @@
 //     A read byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge
 //     that the program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long
 //     as in silicon.
-//  3. A slave is always told "acknowledged" for a byte read; it learns of a not-acknowledge by the stop or
+//  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge by the stop or
 //     repeated start that follows.
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  5. Transmitting without a start condition reaches nobody: not acknowledged.

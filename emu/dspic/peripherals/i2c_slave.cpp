@@ -40,7 +40,7 @@ void I2cSlave::reset() {
     open(old.open);
 }
 
-/// The last cycle that starts at or before `time`: what happens in it is told no later than that.
+/// The last cycle that starts at or before `time`: what happens in it is reported no later than that.
 Cycle I2cSlave::cycle_before(Time time) const {
     const Cycle cycle = clock_.first_cycle_at(time);
     return cycle > 0 && clock_.time_of(cycle) > time ? cycle - 1 : cycle;
@@ -136,7 +136,7 @@ void I2cSlave::read(const I2cPhase& phase, Cycle at) {
         hold_clock();
         around_.interrupts.raise(setup_.slave_irq, at);
     }
-    // Until the address is shown SCLREL still says what it said before it.
+    // Until the address is shown SCLREL still reads as before it.
     if (released() && state_.shown_due == kNoCycle)
         shift(phase.start);
     else

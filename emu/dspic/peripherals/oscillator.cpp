@@ -15,7 +15,7 @@ constexpr double kLprcHertz = 512'000.0;
 constexpr int kClocksPerCycle = 4;
 constexpr double kPostscale[] = {1.0, 4.0, 16.0, 64.0};  // POST
 
-// FOS codes; the primary oscillator and the PLL are told apart further by FPR.
+// FOS codes; the primary oscillator and the PLL are distinguished further by FPR.
 enum Source : std::uint8_t { kLp = 0, kFrc = 1, kLprc = 2, kPrimary = 3, kPll = 7 };
 
 constexpr RegisterBits kOSCCON{"OSCCON"};

@@ -49,7 +49,7 @@ class Pins {
     /// The same for who is no part of what is simulated (reports, watches): changes nothing.
     virtual std::uint16_t quiet_levels(PortLetter port, Cycle now) { return levels(port, now); }
     /// The next cycle after `after` at which the board, by itself, may change one of the pins `heeded`, whose
-    /// edges the chip notices; levels() then says how. Pins that nobody heeds may change between events:
+    /// edges the chip notices; levels() then gives them. Pins that nobody heeds may change between events:
     /// levels() is asked where a program reads them. To be followed by Chip::edges_moved() when it changes.
     virtual Cycle next_edge(PortLetter port, std::uint16_t heeded, Cycle after) const;
     /// Voltage on analog input AN`channel` at this instant, as a fraction of the ADC's reference span; the
@@ -66,7 +66,7 @@ class Pins {
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
     /// The chip, as slave of I2C module `unit`, answers the phase handed to Chip::i2c_slave_phase():
     /// Acknowledge to a Start or Write, Data to a Read. `start` and `clock_period` are the phase's, `stretch`
-    /// tells how long SCL was held: the answer belongs to start + 8 clocks + stretch, and is called then.
+    /// gives how long SCL was held: the answer belongs to start + 8 clocks + stretch, and is called then.
     virtual void i2c_slave_answer(int unit, const cosim::I2cPhase& answer);
     /// Master of SPI module `unit` shifted out `bits` (8 or 16) bits, the last clock edge being now: what
     /// came in meanwhile. The chip select is an ordinary port pin. Without a board the line rests high.
@@ -77,13 +77,13 @@ class Pins {
     /// What clocks the board's codec makes at CSCK and COFS. Fixed for the chip's life. Without a board:
     /// none.
     virtual DciMaster dci_master() const;
-    /// Voltage at VDD, as brown-out reset and low-voltage detector see it; a change is told by
+    /// Voltage at VDD, as brown-out reset and low-voltage detector see it; a change is reported by
     /// Chip::supply_changed().
     virtual double supply() const;
     /// Module CAN`unit` is on a bus, which answers by Chip::can_news(). Fixed for the chip's life. Without a
     /// board it is alone.
     virtual bool can_wired(int unit) const;
-    /// What module CAN`unit` tells that bus, at cycle `now`.
+    /// What module CAN`unit` sends that bus, at cycle `now`.
     virtual void can_to_bus(int unit, const cosim::CanMessage& message, Cycle now);
     /// Bit 0..15 of a port. Unless a board knows better, anything may change.
     virtual OutsidePin outside(PortLetter port, int bit) const;

@@ -39,7 +39,8 @@ class Ports {
     struct Setup {
         std::span<const Place> ports;
         std::span<const Pin> analog;  ///< AN0, AN1, ...
-        /// PCFG bits of AN0..15 and AN16..31, 1 = digital; a pin is analog if any register says so. 0: none.
+        /// PCFG bits of AN0..15 and AN16..31, 1 = digital; a pin is analog if any register has it so. 0:
+        /// none.
         std::array<std::uint16_t, 2> pcfg_low{};
         std::uint16_t pcfg_high = 0;
         std::array<std::uint16_t, 2> cnen{};
@@ -61,7 +62,7 @@ class Ports {
     /// Pins that are lent at present.
     std::uint16_t lent(PortLetter port) const { return at(port).lent; }
     /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset, and where `heeds`
-    /// becomes true, with `at` = kNoCycle: there the level is just told. `heeds`: whether edges make a
+    /// becomes true, with `at` = kNoCycle: there the level is just given. `heeds`: whether edges make a
     /// difference just now, to be followed by heeding_changed() when that changes; without it they always do.
     void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at),
                bool (*heeds)(const void* owner) = nullptr);
@@ -113,8 +114,8 @@ class Ports {
         std::uint16_t lent = 0;
         std::uint16_t lent_output = 0;
         std::uint16_t lent_levels = 0;
-        std::uint16_t driven = 0;   ///< as last told to the board
-        std::uint16_t levels = 0;   ///< as last told to the board
+        std::uint16_t driven = 0;   ///< as last given to the board
+        std::uint16_t levels = 0;   ///< as last given to the board
         std::uint16_t watched = 0;  ///< pins with a watcher or CN input
         std::uint16_t seen = 0;     ///< levels of the watched pins when last looked at
         std::uint16_t noticed = 0;  ///< pin levels at the last PORT read, what CN compares with

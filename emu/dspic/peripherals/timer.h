@@ -8,7 +8,7 @@
 //     counting do not differ.
 //  2. Counting from the internal clock, TxIF is set in the cycle in which TMRx returns to 0; from an
 //     external clock, when the count reaches PRx (what the robot's camera driver relies on).
-//  3. A write to TxCON leaves the prescaler alone (family manual); one data sheet says that it clears it.
+//  3. A write to TxCON leaves the prescaler alone (family manual); one data sheet states that it clears it.
 //  4. In 32-bit mode a direct write to the upper TMR has no effect until it is moved by a write to the
 //     lower one.
 

@@ -10,7 +10,7 @@
 //     received meanwhile. ALTIO does not move the pins.
 //  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at
 //     the next tick of the 16x clock.
-//  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
+//  4. While UTXBRK is set the line is reported low in whole frames, from the end of the frame in progress
 //     on. 33FJ: the next word written goes out as one such frame, and UTXBRK clears itself.
 //  5. 33FJ (uart_line.cpp): a new level at rest, as UTXINV, IREN and UTXEN make it, is handed out as a frame
 //     would be, nine bits after it began; one that lasts less is not. UTXINV and IREN are taken over by the

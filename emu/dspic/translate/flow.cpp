@@ -67,7 +67,7 @@ void Emitter::side_exit(const Op* op, int host_condition, std::uint32_t target, 
 Emitter::Flow Emitter::emit_flow(Machine& m, const Op* op) {
     const std::optional<Condition> condition_wanted = condition_of(op->form);
     const std::uint32_t target = op->target / 2;
-    // Longer ones never skip; may_skip says of the others which do.
+    // Longer ones never skip; may_skip decides which of the others do.
     constexpr std::uint32_t kFarthestArrival = 66;
     const bool arrives = target <= index_ && index_ - target <= kFarthestArrival;
     if (condition_wanted || op->form == FormId::BRA_Expr || op->form == FormId::GOTO_Expr) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a chip says of its program's waiting, for reports.
+// What a chip reports of its program's waiting, for reports.
 
 #include "emu/dspic/core/event_queue.h"
 

@@ -5,7 +5,7 @@
 // of the stack comes round, when nothing came round for half a second (of the loops behind it: its arrivals
 // are counted through calls and interrupts), at a reset, and, for a routine, when the program below it goes
 // on. A program that leaves a loop and is back in it within half a second without passing another loop counts
-// as having stayed: whoever says that a stay is a hang shows that it cannot have left (judge.h).
+// as having stayed: whoever states that a stay is a hang shows that it cannot have left (judge.h).
 
 #include "emu/dspic/core/event_queue.h"
 

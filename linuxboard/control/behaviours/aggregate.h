@@ -1,10 +1,10 @@
 #pragma once
 // Aggregation: drive to the nearest robot heard and stop beside it; leave a group for a larger one.
 //
-// Each robot says how many others stand close to it. A robot goes to a neighbour outside its own group only
+// Each robot sends how many others stand close to it. A robot goes to a neighbour outside its own group only
 // if that one's group is larger, or as large and the neighbour's id is the lowest of all concerned: two
-// groups that hear each other become one. With one payload byte nobody says anything, and groups stay as they
-// form. Alone it wanders.
+// groups that hear each other become one. With one payload byte nobody sends anything, and groups stay as
+// they form. Alone it wanders.
 
 #include "linuxboard/control/behaviours/wander.h"
 

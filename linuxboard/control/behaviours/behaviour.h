@@ -17,9 +17,9 @@ namespace puckloop::control {
 /// Another robot heard by the range-and-bearing board within the last second.
 struct Neighbour {
     int id = 0;              ///< 1..255
-    std::uint32_t data = 0;  ///< what it says: Actuators::say of its behaviour
+    std::uint32_t data = 0;  ///< what it sends: Actuators::say of its behaviour
     double bearing = 0;      ///< rad, -pi..pi, counter-clockwise from straight ahead
-    double range_cm = 0;     ///< between the surfaces; scatters, and tells little beyond 30 cm
+    double range_cm = 0;     ///< between the surfaces; scatters, and shows little beyond 30 cm
     double age = 0;          ///< s since its last packet
 };
 
@@ -36,10 +36,10 @@ struct ColouredSpot {
 struct InfraredWord {
     std::uint8_t data = 0;
     double bearing = 0;   ///< rad, -pi..pi, of the sensor that saw it brightest
-    double range_cm = 0;  ///< between the middles of two robots face to face; of a TAM it says little
+    double range_cm = 0;  ///< between the middles of two robots face to face; of a TAM it shows little
 };
 
-/// Rings of 8 are in the robot's order: 0 is front right, then clockwise; kRingBearing tells where they look.
+/// Rings of 8 are in the robot's order: 0 is front right, then clockwise; kRingBearing gives where they look.
 struct Sensors {
     std::array<double, 8> proximity{};  ///< ADC counts reflected, >= 0; 0 nothing, about 4000 contact
     std::array<double, 8> light{};      ///< brightness, 0 dark to 4095

@@ -16,7 +16,7 @@ struct BoothLights {
     ColouredSpot middle;  ///< colour, sum of the areas, and the mean place weighted by area
     /// rad, counter-clockwise, from the way lights-robot to the booth's axis, both seen from the lights: > 0
     /// if the axis passes on the robot's right when it faces them. None where fewer than two lights can be
-    /// told apart.
+    /// distinguished.
     std::optional<double> askew;
 };
 

@@ -2,8 +2,8 @@
 // Who is around: one entry a robot heard lately, from the packets of the range-and-bearing board.
 //
 // A packet's lowest byte is the sender's id (as ARGoS's calibration has it), the bytes above are what its
-// behaviour says. Strength scatters by 10 to 40 % from packet to packet, so it is averaged before it becomes
-// a distance, and bearings are averaged as directions.
+// behaviour states. Strength scatters by 10 to 40 % from packet to packet, so it is averaged before it
+// becomes a distance, and bearings are averaged as directions.
 
 #include "linuxboard/control/behaviours/behaviour.h"
 #include "linuxboard/control/rab/rab_board.h"

@@ -32,7 +32,7 @@ constexpr double kBend = 3.0;         // mm/s: backs away from it in an arc, by 
 constexpr double kTurnGain = 12.0;    // mm/s for a factor of e between two sensors, standing
 constexpr double kSteerGain = 7.0;    // the same, driving
 constexpr double kMostTurn = 20.0;    // mm/s
-constexpr double kFaint = 40.0;       // counts: what is less says nothing of the sides
+constexpr double kFaint = 40.0;       // counts: what is less shows nothing of the sides
 constexpr std::uint8_t kAllLeds = 0xFF;
 
 }  // namespace

@@ -116,7 +116,7 @@ bool RabBoard::read_singly(std::array<std::uint8_t, 12>& values) {
 }
 
 /// Runs of registers: less than half the time on the bus. The board gives the first register of a run twice
-/// (fact sheet 2.2), which is how to tell that it counts as expected; one that does not is read singly from
+/// (fact sheet 2.2), which is how to find that it counts as expected; one that does not is read singly from
 /// then on.
 bool RabBoard::read_burst(std::array<std::uint8_t, 12>& values) {
     std::array<std::uint8_t, 1> low{kData1};

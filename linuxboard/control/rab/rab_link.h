@@ -6,7 +6,7 @@
 //  * no poll while the own frame is on the air,
 //  * the time between two frames varies by a tenth, so that two robots that collide once do not go on
 //  colliding.
-// A board that stops answering is told once, asked once a second, and set up again when it is back.
+// A board that stops answering is reported once, asked once a second, and set up again when it is back.
 
 #include "linuxboard/control/rab/rab_board.h"
 

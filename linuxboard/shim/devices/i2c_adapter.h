@@ -2,7 +2,7 @@
 // One I2C adapter of the Linux board (/dev/i2c-N) as bus master: transfers become phases on the robot's bus,
 // each taking its real time; the calling thread waits until the STOP.
 //
-// As in the kernel, the time-out (1 s, or what I2C_TIMEOUT says) is that of one message of a transfer. When
+// As in the kernel, the time-out (1 s, or what I2C_TIMEOUT sets) is that of one message of a transfer. When
 // it runs out the call fails with ETIMEDOUT and the controller is reset, which the bus sees as a STOP.
 //
 // Deviations: 1. One byte is one phase: no bus clock jitter, no driver overhead between bytes.
@@ -22,7 +22,7 @@ namespace puckloop::linuxboard {
 struct I2cMessage {
     std::uint16_t address = 0;  ///< 7 bits
     bool read = false;
-    bool counted = false;  ///< the first byte read tells how many follow (SMBus block read)
+    bool counted = false;  ///< the first byte read gives how many follow (SMBus block read)
     std::string data;      ///< to write
     std::uint16_t length = 0;
 };

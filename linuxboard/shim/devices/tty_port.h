@@ -56,7 +56,7 @@ class TtyPort {
     void advance(cosim::Time now, std::vector<cosim::UartFrame>& sent);
     /// When advance() next has something to do.
     cosim::Time next_event() const;
-    /// When a program next sees something come in, as far as the characters known so far tell.
+    /// When a program next sees something come in, as far as the characters known so far show.
     cosim::Time next_input() const { return std::min(fifo_due(), next_tick(listener_.ask_again())); }
     /// What a program sees of the port, but for `valid_until`.
     void show(wire::TtyView& view) const;
@@ -101,7 +101,7 @@ class TtyPort {
   private:
     /// Something may come in, and `receiver` would hear it.
     bool hears(const protocols::UartReceiver& receiver) const;
-    /// When the characters in the FIFO go to the line discipline, as far as those known tell.
+    /// When the characters in the FIFO go to the line discipline, as far as those known show.
     cosim::Time fifo_due() const;
     /// The driver's first tick at or after `time`.
     cosim::Time next_tick(cosim::Time time) const;

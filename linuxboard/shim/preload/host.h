@@ -12,7 +12,7 @@ long host_call(long number, long a = 0, long b = 0, long c = 0, long d = 0, long
 std::int64_t host_nanoseconds();
 void host_futex_wait(std::atomic<std::uint32_t>* word, std::uint32_t value);
 void host_futex_wake(std::atomic<std::uint32_t>* word);
-/// A line on the program's error output, for what the node cannot be told.
+/// A line on the program's error output, for what the node cannot be sent.
 void host_complain(const char* text);
 
 }  // namespace puckloop::shim

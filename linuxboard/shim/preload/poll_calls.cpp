@@ -53,7 +53,7 @@ int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
     return static_cast<int>(ready);
 }
 
-/// What the host says of the entries that are no devices, right now.
+/// What the host reports of the entries that are no devices, right now.
 int poll_outside(pollfd* entries, nfds_t count) {
     pollfd list[kMostEntries];
     nfds_t indices[kMostEntries];

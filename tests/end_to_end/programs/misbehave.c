@@ -1,4 +1,4 @@
-/* A Linux program that does what its first argument says. It knows of no emulator. */
+/* A Linux program that does what its first argument states. It knows of no emulator. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Sleeps <count> times <microseconds>, then says how long that took by its own clock. */
+/* Sleeps <count> times <microseconds>, then prints how long that took by its own clock. */
 #include "serial.h"
 #include <sys/time.h>
 

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-/* A V4L2 program as they are written everywhere: plain system calls, MMAP buffers. The first argument says
+/* A V4L2 program as they are written everywhere: plain system calls, MMAP buffers. The first argument states
    what it does; it prints what a test compares. */
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-/* Reads with VMIN and VTIME given as arguments and tells what came, and after how many ms. */
+/* Reads with VMIN and VTIME given as arguments and prints what came, and after how many ms. */
 #include "serial.h"
 #include <time.h>
 

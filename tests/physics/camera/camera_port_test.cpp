@@ -1,4 +1,4 @@
-// What the world tells cameras: when, what, and that it is enough to see the world as it is.
+// What the world sends cameras: when, what, and that it is enough to see the world as it is.
 
 #include "physics/camera/camera_scene.h"
 #include "physics/camera/camera_signals.h"

@@ -106,7 +106,7 @@ TEST_CASE("points are seen by the pixels whose rays go through them") {
         CHECK(ray->slope == Approx(-up / distance).margin(1e-6));
     }
     CHECK(seen > 1000);
-    // The front camera sees as far to the side as its field of view says, and no mirror sees above its rim.
+    // The front camera sees as far to the side as its field of view states, and no mirror sees above its rim.
     const Optics front(CameraKind::Front, defaults(), {640, 480});
     CHECK(front.project(1.0, std::tan(defaults().front_fov / 2), 0.0)->u == Approx(0).margin(1e-9));
     const Optics omni(CameraKind::Omni, defaults(), {640, 480});

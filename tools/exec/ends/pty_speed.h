@@ -9,7 +9,7 @@ namespace puckloop::exec {
 
 /// 0 after B0, "hang up"; nothing if `terminal` (a file descriptor, of either end) has no settings.
 std::optional<double> terminal_baud(int terminal);
-/// 8 bits, raw, both directions at `baud`. False if it could not be set (errno says why).
+/// 8 bits, raw, both directions at `baud`. False if it could not be set (errno gives the reason).
 bool set_raw_terminal(int terminal, double baud);
 
 }  // namespace puckloop::exec

@@ -40,7 +40,7 @@ class UartEnd {
     virtual void poll(cosim::Time /*now*/, cosim::Time /*listening_since*/) {}
     /// A person or a program with a clock of its own is there: the run is paced by the wall clock.
     virtual bool live() const { return false; }
-    /// What to tell the user when the run begins ("pty /dev/pts/3"), or "".
+    /// What to print for the user when the run begins ("pty /dev/pts/3"), or "".
     virtual std::string announcement() const { return {}; }
     /// The run is over; everything received is written out. Throws RunError if that fails.
     virtual void finish() {}

@@ -1,5 +1,5 @@
 #pragma once
-// Stands between a chip and what is around it, and tells the bench of every pin that changes.
+// Stands between a chip and what is around it, and reports to the bench every pin that changes.
 
 #include "emu/dspic/peripherals/pins.h"
 #include "tools/exec/targets/target.h"

@@ -127,7 +127,7 @@ class Target {
     /// What the program waits for, once it has hung in one loop; nothing for a program that runs, or a chip
     /// whose loops nobody watches.
     virtual std::optional<std::string> hang();
-    /// "main.c:12" of a program address, where the image says; else empty.
+    /// "main.c:12" of a program address, where the image states it; else empty.
     virtual std::string source_line(std::uint32_t /*pc*/) const { return {}; }
     /// Program addresses at which code of a source line begins.
     virtual std::vector<std::uint32_t> addresses_of(std::string_view /*file*/, std::uint32_t /*line*/) const {

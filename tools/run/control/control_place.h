@@ -11,8 +11,8 @@ namespace puckloop::tools {
 /// A path for the socket that nobody has yet; nothing is made.
 std::string new_control_path();
 
-/// While it lives: the private folder (mode 0700) of the socket, and control.json, which says where it is.
-/// Afterwards control.json says that the run has ended.
+/// While it lives: the private folder (mode 0700) of the socket, and control.json, which gives its place.
+/// Afterwards control.json states that the run has ended.
 class ControlPlace {
   public:
     /// `socket` empty: the run takes no commands. control.json of an earlier run is removed, and if that run

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// A program that computes for ever is told by its own board, which knows more, before the conductor loses
+// A program that computes for ever is reported by its own board, which knows more, before the conductor loses
 // patience with the board.
 constexpr double kWatchdogShare = 0.5;
 

@@ -12,7 +12,7 @@
 
 namespace puckloop::tools {
 
-/// The board that `make` makes, as it is if the description says nothing of states. A cached state that
+/// The board that `make` makes, as it is if the description has nothing of states. A cached state that
 /// cannot be used is as if it were not there. Throws InputError for one from a file.
 std::unique_ptr<cosim::Node> with_state(const nlohmann::json& spec, cosim::ResumedNode::Make make);
 

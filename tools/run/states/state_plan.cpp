@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 // A program that starts earlier finds its board ready without anybody waiting for it.
 constexpr double kShortestBoot = 5.0;  // s
 
-/// How long the user has to wait for a robot's main board: what the scenario says, or until the robot's
+/// How long the user has to wait for a robot's main board: what the scenario states, or until the robot's
 /// program starts.
 Time boot_of(const scenarios::RobotBoards& robot) {
     if (robot.pic.boot) return cosim::from_seconds(*robot.pic.boot);

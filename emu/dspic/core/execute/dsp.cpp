@@ -86,7 +86,7 @@ std::int64_t shift_right(std::int64_t value, int by) {  // negative = left
     return by >= 0 ? value >> by : value * (std::int64_t{1} << -by);
 }
 
-// Accumulator operands live in op->aux: bit 0 = accumulator, the rest as each handler says.
+// Accumulator operands live in op->aux: bit 0 = accumulator, the rest as each handler states.
 int target(const Op* op) {
     return op->aux & 1;
 }

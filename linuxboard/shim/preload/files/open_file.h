@@ -66,7 +66,7 @@ const char* place_of(const void* address);
 void random_bytes(void* buffer, std::size_t size);
 
 // external.cpp: descriptors that are not devices (pipes, sockets) and may block the one running thread
-/// Waits until the host says that `fd` is ready for `events`; false if a signal came first.
+/// Waits until the host reports that `fd` is ready for `events`; false if a signal came first.
 bool await_external(int fd, short events);
 /// Something was written or closed: those who wait outside look again.
 void external_changed();

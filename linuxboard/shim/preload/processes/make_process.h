@@ -28,8 +28,8 @@ pid_t report_birth(const Birth& birth, bool made);
 /// The process numbers of ended children, as waitpid() gives them; see wait_calls.cpp.
 pid_t await_child(pid_t which, int* status, int options);
 
-/// Ends this process with one line if `file` is a program that cannot be conducted; `spawned`: only says so,
-/// and returns false.
+/// Ends this process with one line if `file` is a program that cannot be conducted; `spawned`: only reports
+/// it, and returns false.
 bool can_be_conducted(const char* file, bool spawned);
 /// `environment` with what leads to the link of the process at `slot` and to this library.
 char** linked_environment(char* const* environment, std::uint32_t slot);
