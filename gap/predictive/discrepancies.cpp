@@ -100,8 +100,8 @@ void Discrepancies::add_covariate(const stats::Covariate& covariate, const std::
     Grouping grouping{std::vector<int>(covariate.value.size(), -1), static_cast<std::size_t>(count)};
     for (std::size_t i = 0, k = 0; i < covariate.value.size(); ++i)
         if (std::isfinite(covariate.value[i])) grouping.place[i] = bin[k++];
-    PredictiveCurve curve{covariate.name, covariate_label(covariate.name), residual, Residual::Vertical,
-                          is_replicated(observable_)};
+    PredictiveCurve curve{covariate.name, covariate_label(covariate.name), residual, Residual::Vertical};
+    curve.counts = is_replicated(observable_);
     curve.x = of_groups(covariate.value, grouping.place, grouping.count, false);
     if (covariate.kind == stats::CovariateKind::Label)
         for (std::size_t k = 0; k < grouping.count; ++k) {
@@ -118,8 +118,8 @@ void Discrepancies::add_spread() {
     Grouping grouping{{observable_.run.begin(), observable_.run.end()}, 0};
     for (const std::uint32_t run : observable_.run)
         grouping.count = std::max<std::size_t>(grouping.count, run + 1);
-    PredictiveCurve curve{"spread per run", "run", "mean size", Residual::Vertical,
-                          is_replicated(observable_)};
+    PredictiveCurve curve{"spread per run", "run", "mean size", Residual::Vertical};
+    curve.counts = is_replicated(observable_);
     for (std::size_t run = 0; run < grouping.count; ++run)
         curve.x.push_back(static_cast<double>(run + 1));
     places_.push_back(std::move(curve));

@@ -12,7 +12,6 @@ struct PredictiveCurve {
     std::string name;              ///< "marginal law", "autocorrelation", "distance", ..., "spread per run"
     std::string x_label, y_label;  ///< with units, but for the residual's
     enum class Residual { Nowhere, Horizontal, Vertical } residual;  ///< the axis in the check's unit
-    bool counts = false;                                             ///< in the decision
     std::vector<double> x{};                                         ///< places; of categories 0, 1, ...
     std::vector<double> measured{};                                  ///< of what was measured
     std::vector<double> low{}, high{};      ///< 5 % and 95 % of the replicated data, place by place
@@ -22,6 +21,7 @@ struct PredictiveCurve {
     double p = 1.0;
     double tail =
         1.0;  ///< the same, where none is as far carried on by a gamma distribution (stats/exchange.h)
+    bool counts = false;  ///< in the decision
 };
 
 /// One observable, by the simulator as it is (its errors fitted) or with the chosen causes.
