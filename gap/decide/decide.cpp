@@ -34,7 +34,7 @@ std::vector<std::string> objections(const Grounds& g) {
     against(!gains_enough(g.gain, g.candidates, g.causes),
             "does not gain for sure on runs that were not fitted");
     against(!g.error_falls, "lowers the error of so few runs by chance only, as far as they tell");
-    against(g.in_rounding, "moves readings by no more than their rounding");
+    against(g.in_rounding, "moves readings by no more than their rounding or cutting off");
     // 2. Identification. What was assumed may itself be what is wrong.
     against(!g.assumed.empty(),
             fmt::format("{} was assumed, not measured, and an error of it may look the same", g.assumed));

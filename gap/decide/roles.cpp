@@ -119,7 +119,7 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
         return study.candidates()[effect].effect->role == role;
     };
     auto doubted = those([&](std::size_t effect) { return within_rounding(study, fit, effect); });
-    if (!doubted.empty()) return {doubted, "moves readings by no more than their rounding"};
+    if (!doubted.empty()) return {doubted, "moves readings by no more than their rounding or cutting off"};
     doubted = those([&](std::size_t effect) {
         return is(effect, EffectRole::Mean) && mean_share(study, fit, effect) < thresholds::kMeanShare;
     });

@@ -47,10 +47,10 @@ inline constexpr std::size_t kRunsThatJudge = 3;
 /// Runs below which there are no two halves to confirm on: each half needs two runs to be judged by.
 inline constexpr std::size_t kRunsToConfirm = 4;
 
-/// Of the step that readings keep to: an effect that moves them by less, where it acts, is not told from how
-/// they were rounded (to which side ties go, to the nearest or down). 1 / sqrt(12), the sd of rounding
-/// itself.
-inline constexpr double kRounding = 0.2887;
+/// Of the step that readings keep to: an effect that moves them by less, where it acts, does not differ from how
+/// they became whole. Half a step, by which readings lie low that are cut off (a firmware's integer division)
+/// and not rounded, and 1 / sqrt(12), the sd of rounding itself.
+inline constexpr double kRounding = 0.5 + 0.2887;
 
 // Selection. BIC screens, what decides is the held-out score (gap/evidence/criterion.h).
 

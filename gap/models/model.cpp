@@ -96,7 +96,7 @@ namespace {
 
 /// A nominal number far outside anything built gives no prediction to start from.
 void check_finite(const Experiment& experiment, const Model& model) {
-    constexpr double kLargest = 1e9;
+    constexpr double kLargest = 1e11;  // clocks may count from 1970, in seconds
     const Prediction prediction = model.predicted(model.neutral());
     for (std::size_t o = 0; o < prediction.size(); ++o)
         for (const double mean : prediction[o].mean)

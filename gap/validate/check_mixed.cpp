@@ -114,6 +114,24 @@ void put_together(Experiment& experiment, Run& run, std::vector<double>& seq) {
                            wrap);
 }
 
+/// Frames that were lost are seen by their rows only: what is not there looks like nothing wrong.
+void report_absent(Experiment& experiment, const Run& run, const std::vector<double>& seq) {
+    constexpr double kFewAbsent = 0.02;  // rows go missing for other reasons as well
+    double absent = 0.0;
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < seq.size(); ++i) {
+        const double between = seq[i] - seq[i - 1] - 1;
+        if (!(between > 0)) continue;
+        if (absent == 0.0) first = i;
+        absent += between;
+    }
+    if (absent <= kFewAbsent * (absent + static_cast<double>(seq.size()))) return;
+    experiment.caution(
+        "{}: {:.0f} frame numbers have no row (seq goes from {:.0f} to {:.0f} at row {}): a frame that was "
+        "lost needs a row with frame_ok = 0, else nothing can be found about losses",
+        run.file, absent, seq[first - 1], seq[first], first + 1);
+}
+
 void check_frames(Experiment& experiment, Run& run) {
     constexpr double kMostBack = 0.05;
     constexpr std::size_t kFew = 3, kEnough = 20;
@@ -131,6 +149,7 @@ void check_frames(Experiment& experiment, Run& run) {
                            "robots are mixed, or given twice",
                            seq[first], seq[first - 1], back, seq.size()),
                "one robot a file, each frame once", static_cast<long>(first));
+    report_absent(experiment, run, seq);
     const auto host = known(run.column("t_host_s"));
     const auto& period = run.column("nominal_period");
     if (!seq.empty() || period.empty() || std::isnan(period.front())) return;

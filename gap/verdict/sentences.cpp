@@ -25,8 +25,8 @@ std::string listed(const std::vector<std::string>& words, const char* last) {
 
 }  // namespace
 
-std::string quantity(double value, const std::string& unit, int more_digits) {
-    const double size = std::abs(value);
+std::string quantity(double value, const std::string& unit, int more_digits, double like) {
+    const double size = std::abs(std::isnan(like) ? value : like);
     const int three = 3 + more_digits, four = 4 + more_digits;
     if (unit == "m" && size < 1) return fmt::format("{:.{}g} mm", value * 1e3, four);
     if (unit == "s" && size < 1) return fmt::format("{:.{}g} ms", value * 1e3, four);
@@ -40,11 +40,11 @@ std::string cause_sentence(const Cause& cause) {
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     std::vector<std::string> figures;
     for (const FittedParameter& p : cause.parameters) {
-        const int more =
-            stats::more_digits(p.low, (p.low + p.high) / 2, p.high,
-                               [&](double value, int digits) { return quantity(value, p.unit, digits); });
-        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, quantity(p.value, p.unit, more),
-                                      quantity(p.low, p.unit, more), quantity(p.high, p.unit, more)));
+        const double largest = std::max({std::abs(p.value), std::abs(p.low), std::abs(p.high)});
+        const auto shown = [&](double value, int digits) { return quantity(value, p.unit, digits, largest); };
+        const int more = stats::more_digits(p.low, (p.low + p.high) / 2, p.high, shown);
+        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, shown(p.value, more), shown(p.low, more),
+                                      shown(p.high, more)));
     }
     if (!figures.empty()) text += ": " + listed(figures, "and");
     text += ".";

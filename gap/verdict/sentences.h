@@ -5,12 +5,14 @@
 #include "gap/fit_test/rival_forms.h"
 #include "gap/verdict/verdict.h"
 
+#include <cmath>
 #include <string>
 
 namespace puckloop::gap {
 
-/// "1.23 mm", "12.4 counts", "1.2 %": a number a person reads, with three or four digits and `more_digits`.
-std::string quantity(double value, const std::string& unit, int more_digits = 0);
+/// "1.23 mm", "12.4 counts", "1.2 %": a number a person reads, with three or four digits and `more_digits`;
+/// in the unit in which `like` is read well, where that is given (an interval beside its value).
+std::string quantity(double value, const std::string& unit, int more_digits = 0, double like = NAN);
 /// What a cause says about this robot: title and its parameters with intervals.
 std::string cause_sentence(const Cause& cause);
 /// Whether an effect's form is told from its neighbours'; empty where it is.

@@ -6,6 +6,7 @@
 #include "gap/decide/grounds.h"
 #include "gap/predictive/predictive.h"
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ struct Cause {
     std::string title;                         ///< in plain words
     double evidence = 0.0;                     ///< delta BIC against the model without it: > 0 speaks for it
     double score_gain = 0.0;                   ///< held-out log score won, nats over all held-out rows
-    double score_low = 0.0, score_high = 0.0;  ///< 90 % over blocks of runs
+    double score_low = NAN, score_high = NAN;  ///< 90 % over blocks of runs; NaN of what was not chosen
     std::vector<FittedParameter> parameters;
     std::string sentence;  ///< what it says about this robot, with figures
     std::string form;      ///< whether the data tells its form from its neighbours', in words; empty: it does
