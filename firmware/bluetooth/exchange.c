@@ -52,7 +52,7 @@ u8 listen(void) {
     return LISTEN_BYTE;
 }
 
-/* Whether the other sends "yes" and ends the line within 2 s. */
+/* Whether the other says "yes" and ends the line within 2 s. */
 static u8 answered(void) {
     const char* expected = "yes\n";
     const u16 begin = clock_ticks();

@@ -1,5 +1,5 @@
 /* Two e-pucks talk by Bluetooth. Selector at 0: the robot listens, writes to UART2 what it hears, answers
- * "yes". At any other position it calls: looks for e-pucks, links with the first, sends "I hear you", waits
+ * "yes". At any other position it calls: looks for e-pucks, links with the first, says "I hear you", waits
  * for the answer, releases, and writes to UART2 how long each took; again after 5 s. */
 
 #include "../epuck/board.h"

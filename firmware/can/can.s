@@ -1,4 +1,4 @@
-; Robots on a CAN bus: each sends its selector's position every 10 ms on CAN1, and toggles LED n for each frame
+; Robots on a CAN bus: each says its selector's position every 10 ms on CAN1, and toggles LED n for each frame
 ; from robot n.
 ;
 ; 122.88 kbit/s: FCAN = FCY = 14.7456 MHz, 15 quanta of 8 cycles, sampled after 11 of them. Identifier 0x100 +

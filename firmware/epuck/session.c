@@ -172,7 +172,7 @@ static void take(u16 entry) {
             if (!(entry & UART_BAD)) state = CONFIGURATION;
             return;
         }
-        announced = 0; /* the forgotten session goes on, or its silence after five bytes shows a new one */
+        announced = 0; /* the forgotten session goes on, or its silence after five bytes tells a new one */
         state = SESSION;
     }
     in.bytes[in_count++] = entry;

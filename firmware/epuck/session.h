@@ -1,5 +1,5 @@
 /* The conversation with the Linux board: waiting, configuration, then a sensor record for each actuator
- * record until the end record. README.md states where it does better than the original. */
+ * record until the end record. README.md says where it does better than the original. */
 #ifndef EPUCK_SESSION_H
 #define EPUCK_SESSION_H
 

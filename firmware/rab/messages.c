@@ -1,6 +1,6 @@
 #include "messages.h"
 
-#define SLOTS 11 /* one stays free, to distinguish full from empty */
+#define SLOTS 11 /* one stays free, to tell full from empty */
 
 static struct message slots[SLOTS];
 static volatile u8 in;

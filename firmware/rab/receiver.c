@@ -16,8 +16,8 @@
 #define NO_PREAMBLE 76
 #define RESET_FROM 30 /* of the preamble: the peak detector is discharged */
 #define RESET_TO 45
-#define GATHERING 45     /* after a frame's last falling edge all its sensors have reported, */
-#define NEWBORN 12       /* and so long after the first of them reported */
+#define GATHERING 45     /* after a frame's last falling edge all its sensors have told, */
+#define NEWBORN 12       /* and so long after the first of them told */
 #define TOGETHER 8       /* last falling edges of one frame at different sensors */
 #define FORGOTTEN 200    /* a run of this length will never matter */
 #define DARK_RESET 12    /* the detectors are discharged */
@@ -227,7 +227,7 @@ static u16 take_time(u16 now) {
     return discharge;
 }
 
-/* Groups whose sensors have all reported become receptions; when nobody takes these, the newest is lost. */
+/* Groups whose sensors have all told become receptions; when nobody takes these, the newest is lost. */
 static void close_groups(u16 now) {
     u8 i;
     for (i = 0; i < GROUPS; ++i) {

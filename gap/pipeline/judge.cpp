@@ -30,16 +30,15 @@ bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged
     return true;
 }
 
-bool ask_each(const Study& study, const Judging& how, Judged& result) {
+void ask_each(const Study& study, const Judging& how, Judged& result) {
     const Diagnosis& found = result.diagnosis;
     // That a sum wanders as well takes nothing from what a cause makes of it.
     std::vector<Leftover> structures = found.leftovers;
     std::erase_if(structures, [](const Leftover& one) { return one.covariate == kWanderCovariate; });
-    return let_go(
-        study, how,
-        {outweighed(study, result.chosen.selection, found.free_forms, structures, share_allowed(study)),
-         "leaves too much of what it acts on"},
-        result);
+    let_go(study, how,
+           {outweighed(study, result.chosen.selection, found.free_forms, structures, share_allowed(study)),
+            "leaves too much of what it acts on"},
+           result);
 }
 
 OutOfRole roles(const Study& study, const Judging& how, const Judged& result) {
@@ -65,8 +64,8 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
     result.diagnosis = std::move(diagnosis);
     Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
     const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
-    while (goes_on() && (ask_each(study, how, result) ||
-                         (goes_on() && let_go(study, how, roles(study, how, result), result)))) {
+    if (goes_on()) ask_each(study, how, result);
+    while (goes_on() && let_go(study, how, roles(study, how, result), result)) {
     }
     if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
     result.doubt = doubt_of(g);

@@ -101,7 +101,7 @@ TEST_CASE_METHOD(AdcBench, "SAMP with the internal counter converts once, DONE c
     CHECK_FALSE(read(sfr::ADCON1) & kDone);
 }
 
-TEST_CASE_METHOD(AdcBench, "Timer3 and INT0 end sampling when SSRC says so") {
+TEST_CASE_METHOD(AdcBench, "Timer3 and INT0 end sampling when SSRC selects them") {
     write(sfr::ADCON3, 0x0001);
     write(sfr::ADCON1, kAdon | kTimer3 | kAsam);
     go(700);

@@ -122,16 +122,18 @@ TEST_CASE("a structure counts by what its p value may stand for at most") {
 }
 
 TEST_CASE("what rounding may do by itself is no cause, what goes beyond it is one") {
-    const auto kept_to_steps = [](double offset) {
+    const auto kept_to_steps = [](double offset, double half = 0.5) {
         Experiment experiment = drives(4, 12, [=](double level, double, int) { return level + offset; });
         experiment.instruments["reading"].quantum = 4;
         for (Run& run : experiment.runs)
             for (double& reading : run.columns["reading"])
-                reading = 4 * std::floor(reading / 4 + 0.5);  // half way: up, 0.5 counts too high in the mean
+                reading =
+                    4 * std::floor(reading / 4 + half);  // half way: up, 0.5 counts too high in the mean
         return analyse(experiment);
     };
-    const Verdict rounding = kept_to_steps(0.4), more = kept_to_steps(2.5);
+    const Verdict rounding = kept_to_steps(0.4), more = kept_to_steps(3.5), cut_off = kept_to_steps(0.0, 0.0);
     CHECK(rounding.decision == Decision::NoEffect);
+    CHECK(cut_off.causes.empty());  // half a step too low
     CHECK(more.decision == Decision::Named);
     CHECK(more.causes.at(0).name == "ground_gain");
 }
