@@ -5,6 +5,7 @@
 #include "gap/stats/tails.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -51,55 +52,53 @@ Pushed pushed_rows(const Model& model, const State& state) {
     return rows;
 }
 
+struct Push {
+    bool begins;          ///< the first of its run
+    double x, y, turned;  ///< by how much, in the room and about the axle; NaN where no sum says
+};
+
+std::vector<Push> pushes_of(const Experiment& experiment, const Pushed& rows) {
+    const auto news = [&](const char* sum, std::size_t i) {
+        const auto found = rows.news.find(sum);
+        return found == rows.news.end() ? NAN : found->second[i];
+    };
+    const bool along = rows.news.contains("along");
+    std::vector<Push> pushes;
+    bool begins = true;
+    for (std::size_t i = 0; i < rows.pushed.size(); ++i) {
+        begins = begins || rows.base->starts[i] != 0;
+        if (rows.pushed[i] < kIsPush) continue;
+        const double x = news(along ? "along" : "x_m", i), y = news(along ? "across" : "y_m", i);
+        // The sums stand along the robot's axes or the room's.
+        const double heading =
+            along ? experiment.runs[rows.base->run[i]].column("theta_rad")[rows.base->row[i]] : 0.0;
+        pushes.push_back({begins, x * std::cos(heading) - y * std::sin(heading),
+                          x * std::sin(heading) + y * std::cos(heading), news("heading", i)});
+        begins = false;
+    }
+    return pushes;
+}
+
 /// Successive pushes of a run, and how many of them go against the one before.
 struct Successive {
     unsigned pairs = 0, against = 0;
+
+    void take(double product) {
+        if (!std::isfinite(product)) return;
+        pairs += 1;
+        against += product < 0 ? 1 : 0;
+    }
     double p_value() const { return stats::binomial_tail(pairs, 0.5, against); }
 };
 
-/// By the angle between them in the room.
-Successive successive_shifts(const Experiment& experiment, const Pushed& rows) {
-    const bool turned = rows.news.contains("along");
-    const auto first = rows.news.find(turned ? "along" : "x_m"),
-               second = rows.news.find(turned ? "across" : "y_m");
-    Successive all;
-    if (first == rows.news.end() || second == rows.news.end()) return all;
-    double last_x = NAN, last_y = NAN;
-    for (std::size_t i = 0; i < rows.pushed.size(); ++i) {
-        if (rows.base->starts[i] != 0) last_x = last_y = NAN;
-        if (rows.pushed[i] < kIsPush) continue;
-        double x = first->second[i], y = second->second[i];
-        if (turned) {
-            const double heading = experiment.runs[rows.base->run[i]].column("theta_rad")[rows.base->row[i]];
-            const double along = x;
-            x = along * std::cos(heading) - y * std::sin(heading);
-            y = along * std::sin(heading) + y * std::cos(heading);
-        }
-        const double same = x * last_x + y * last_y;
-        if (std::isfinite(same)) {
-            all.pairs += 1;
-            all.against += same < 0 ? 1 : 0;
-        }
-        if (std::isfinite(x) && std::isfinite(y)) last_x = x, last_y = y;
-    }
-    return all;
-}
-
-/// By the sense in which they turn.
-Successive successive_turns(const Pushed& rows) {
-    const auto heading = rows.news.find("heading");
-    Successive all;
-    if (heading == rows.news.end()) return all;
-    double last = NAN;
-    for (std::size_t i = 0; i < rows.pushed.size(); ++i) {
-        if (rows.base->starts[i] != 0) last = NAN;
-        if (rows.pushed[i] < kIsPush || !std::isfinite(heading->second[i])) continue;
-        const double same = heading->second[i] * last;
-        if (std::isfinite(same)) {
-            all.pairs += 1;
-            all.against += same < 0 ? 1 : 0;
-        }
-        last = heading->second[i];
+/// By the angle between them in the room, and by the sense in which they turn.
+std::array<Successive, 2> successive(const std::vector<Push>& pushes) {
+    std::array<Successive, 2> all;
+    for (std::size_t k = 1; k < pushes.size(); ++k) {
+        const Push &last = pushes[k - 1], &now = pushes[k];
+        if (now.begins) continue;
+        all[0].take(now.x * last.x + now.y * last.y);
+        all[1].take(now.turned * last.turned);
     }
     return all;
 }
@@ -136,7 +135,7 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
                                           static_cast<unsigned>(std::floor(there[c]))),
                      there[c], share[c] * found.all, component.where[c]);
     }
-    for (const Successive& one : {successive_shifts(experiment, rows), successive_turns(rows)})
+    for (const Successive& one : successive(pushes_of(experiment, rows)))
         look(one.p_value(), one.against, one.pairs / 2.0, "against the push before");
     found.p_value = std::min(least * tried, 1.0);
     if (found.p_value > kByChance) return std::nullopt;
