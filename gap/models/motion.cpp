@@ -43,6 +43,9 @@ constexpr double kSmallAngle = 1e-2;  // rad: below, two terms of a series do fo
 constexpr double kDoubt = 2e-3;       // rad: of a run's heading as a whole
 constexpr double kLeastDoubt = 1e-5, kMostDoubt = 0.2, kDoubtWidth = 3.0;
 
+constexpr std::pair<const char*, const char*> kWheelColumns[] = {{"steps_left", "cmd_left"},
+                                                                 {"steps_right", "cmd_right"}};
+
 /// Beside the simulator's: how the robot gets its commands, and what looks at it.
 struct Numbers : physics::Parameters {
     double agenda = 1.0;  ///< 0: the project's own firmware; read before the fit, as start_loss
@@ -162,8 +165,7 @@ class MotionModel final : public ModelOf<Numbers> {
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
         exact_ = experiment.nominal_or("firmware.agenda", 1.0) == 0;
         // A counter has counted what a start made.
-        const Motor motor{exact_ ? MotorDriver::Timer : MotorDriver::Agenda,
-                          counted_ ? 0.0 : experiment.nominal_or("firmware.start_loss", 0.0)};
+        const Motor motor = motor_of(experiment);
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
         std::size_t from = 0;
@@ -173,13 +175,12 @@ class MotionModel final : public ModelOf<Numbers> {
                 const Run& run = experiment.runs[base.run[i]];
                 Path path;
                 path.run = base.run[i];
-                path.wheel[0] = WheelCurve::counted(run, "steps_left", "cmd_left", motor);
-                path.wheel[1] = WheelCurve::counted(run, "steps_right", "cmd_right", motor);
-                if (counted_) {
-                    path.asked[0] = WheelCurve::commanded(run, "cmd_left", motor);
-                    path.asked[1] = WheelCurve::commanded(run, "cmd_right", motor);
-                    for (std::size_t w = 0; w < 2; ++w)
-                        path.wheel[w].unround(path.asked[w]);
+                for (std::size_t w = 0; w < 2; ++w) {
+                    const auto& [counter, command] = kWheelColumns[w];
+                    path.wheel[w] = WheelCurve::counted(run, counter, command, motor);
+                    if (!counted_) continue;
+                    path.asked[w] = WheelCurve::commanded(run, command, motor);
+                    path.wheel[w].unround(path.asked[w]);
                 }
                 paths_.push_back(std::move(path));
                 along = across = heading = 0;
@@ -223,6 +224,24 @@ class MotionModel final : public ModelOf<Numbers> {
         if (counted_) gather_counters(experiment);
     }
 
+    /// Without the agenda it is the project's firmware or a robot that keeps to its commands: its counters
+    /// show which. (A plan that is off by parts of a step wanders where counters are exact.)
+    Motor motor_of(const Experiment& experiment) const {
+        Motor motor{exact_ ? MotorDriver::Timer : MotorDriver::Agenda,
+                    counted_ ? 0.0 : experiment.nominal_or("firmware.start_loss", 0.0)};
+        if (!exact_ || !counted_) return motor;
+        const auto strays = [&](MotorDriver driver) {
+            double sum = 0.0;
+            for (const Run& run : experiment.runs)
+                for (const auto& [counter, command] : kWheelColumns)
+                    sum += WheelCurve::counted(run, counter, command, motor)
+                               .strays_from(WheelCurve::commanded(run, command, {driver}));
+            return sum;
+        };
+        if (strays(MotorDriver::Exact) < strays(MotorDriver::Timer)) motor.driver = MotorDriver::Exact;
+        return motor;
+    }
+
     /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
     std::vector<double> turns() const {
         const Numbers values = nominal();
@@ -261,11 +280,10 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     void gather_counters(const Experiment& experiment) {
-        constexpr const char* kNames[] = {"steps_left", "steps_right"};
-        for (std::size_t w = 0; w < 2; ++w) {
-            const Rows rows(experiment, "", {"t_s", kNames[w]});
+        for (const auto& [counter, command] : kWheelColumns) {
+            const Rows rows(experiment, "", {"t_s", counter});
             std::vector<std::uint32_t> used;
-            Observable one = rows.observable(kNames[w], NoiseKind::Level, used);
+            Observable one = rows.observable(counter, NoiseKind::Level, used);
             one.unit = "steps";
             one.instrument.quantum = 0.0;
             one.fixed_sd = kCounterSd;

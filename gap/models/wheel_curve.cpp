@@ -51,6 +51,11 @@ double timer_speed(double command) {
     return std::copysign(clock / std::floor((clock + std::floor(speed / 2)) / speed), command);
 }
 
+double speed_of(double command, MotorDriver driver) {
+    if (driver == MotorDriver::Exact) return command;
+    return driver == MotorDriver::Agenda ? agenda_speed(command) : timer_speed(command);
+}
+
 WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const Motor& motor) {
     WheelCurve curve;
     const auto &time = run.column("t_s"), &asked = run.column(command);
@@ -73,8 +78,7 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const
         curve.time.push_back(time[i]);
         curve.steps.push_back(sum);
         if (std::isnan(asked[i])) continue;
-        const bool agenda = motor.driver == MotorDriver::Agenda;
-        const double next = agenda ? agenda_speed(asked[i]) : timer_speed(asked[i]);
+        const double next = speed_of(asked[i], motor.driver);
         if (next != speed) curve.jumps.push_back({time[i], next - speed, speed});
         if (next == 0.0)
             wait = 0.0;
@@ -112,6 +116,16 @@ void WheelCurve::unround(const WheelCurve& asked) {
         if (std::abs(planned + offset - steps[i]) > kRounded) offset = steps[i] - planned;
         steps[i] = planned + offset;
     }
+}
+
+double WheelCurve::strays_from(const WheelCurve& asked) const {
+    if (empty() || asked.empty()) return 0.0;
+    CurveReader plan(asked);
+    const double offset = steps.front() - plan.at(time.front());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        sum += std::abs(steps[i] - offset - plan.at(time[i]));
+    return sum;
 }
 
 double CurveReader::at(double time) {

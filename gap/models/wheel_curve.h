@@ -15,8 +15,10 @@ namespace puckloop::gap {
 double agenda_speed(double command);
 /// The speed that the project's own firmware makes of a command: whole counts of a 230.4 kHz timer a step.
 double timer_speed(double command);
-/// Which of the two drives the motors.
-enum class MotorDriver { Agenda, Timer };
+/// What drives the motors; Exact: a robot, or a script's, that makes of a command just this speed.
+enum class MotorDriver { Agenda, Timer, Exact };
+
+double speed_of(double command, MotorDriver driver);
 
 struct Motor {
     MotorDriver driver = MotorDriver::Agenda;
@@ -42,6 +44,8 @@ struct WheelCurve {
     /// Puts the fractions of a step back that a counter rounds off: as `asked` has them, wherever counter and
     /// command agree.
     void unround(const WheelCurve& asked);
+    /// By how many steps a counter and `asked` part, summed over the rows.
+    double strays_from(const WheelCurve& asked) const;
     bool empty() const { return time.empty(); }
 };
 

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <vector>
 
 using namespace puckloop::gap;
@@ -33,6 +34,24 @@ double at(const WheelCurve& curve, double time) {
 TEST_CASE("each driver makes its own speed of a command") {
     CHECK(at(commanded({0, 600, 0, 0}, 0, MotorDriver::Agenda), 0.3) == Approx(62.5));
     CHECK(at(commanded({0, 600, 0, 0}, 0), 0.3) == Approx(60));
+}
+
+TEST_CASE("a counter shows whether the robot keeps to its commands or has the timer's speeds") {
+    const std::vector<double> speeds(40, 500.0);  // the timer makes 500.9 of it
+    const auto counted = [&](MotorDriver robot) {
+        WheelCurve counter = commanded(speeds, 0, robot);
+        for (double& steps : counter.steps)
+            steps = std::round(steps);
+        return counter;
+    };
+    const WheelCurve exact = commanded(speeds, 0, MotorDriver::Exact), timer = commanded(speeds, 0);
+    CHECK(at(exact, 3.0) == Approx(1500));
+    CHECK(counted(MotorDriver::Exact).strays_from(exact) < counted(MotorDriver::Exact).strays_from(timer));
+    CHECK(counted(MotorDriver::Timer).strays_from(timer) < counted(MotorDriver::Timer).strays_from(exact));
+    // Whole steps of a robot that keeps to its commands are the plan's own.
+    WheelCurve put_back = counted(MotorDriver::Exact);
+    put_back.unround(exact);
+    CHECK(at(put_back, 3.0) == Approx(1500));
 }
 
 TEST_CASE("a start makes some steps too few, forwards and backwards, and nothing makes up for them") {
