@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace puckloop::gap {
 
@@ -197,7 +198,8 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
     const RowSize size(o, p, noise);
     const bool has_line = p.line_amplitude > 0.0 && !o.time.empty();
     const double omega = 2 * std::numbers::pi * p.line_frequency;
-    const stats::StudentLaw law(std::exp(noise.log_tail));
+    std::optional<stats::StudentLaw> law;
+    if (!p.lapse.empty()) law.emplace(std::exp(noise.log_tail));
     Line line;
     bool carried = false;
     Known last;
@@ -232,7 +234,7 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
         }
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
-        last = of_row(p.lapse, i) > 0.0 ? beside_lapse(p, i, innovation, sd, law, ahead) : Known{error, 0.0};
+        last = of_row(p.lapse, i) > 0.0 ? beside_lapse(p, i, innovation, sd, *law, ahead) : Known{error, 0.0};
         carried = true;
     }
 }

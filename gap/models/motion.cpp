@@ -164,7 +164,6 @@ class MotionModel final : public ModelOf<Numbers> {
             {{x, "x_m"}, {y, "y_m"}, {theta, "theta_rad"}, {load, "load_kg"}, {incline, "incline_rad"}});
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
         exact_ = experiment.nominal_or("firmware.agenda", 1.0) == 0;
-        // A counter has counted what a start made.
         const Motor motor = motor_of(experiment);
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
@@ -227,18 +226,18 @@ class MotionModel final : public ModelOf<Numbers> {
     /// Without the agenda it is the project's firmware or a robot that keeps to its commands: its counters
     /// show which. (A plan that is off by parts of a step wanders where counters are exact.)
     Motor motor_of(const Experiment& experiment) const {
+        // A counter has counted what a start made.
         Motor motor{exact_ ? MotorDriver::Timer : MotorDriver::Agenda,
                     counted_ ? 0.0 : experiment.nominal_or("firmware.start_loss", 0.0)};
         if (!exact_ || !counted_) return motor;
-        const auto strays = [&](MotorDriver driver) {
-            double sum = 0.0;
-            for (const Run& run : experiment.runs)
-                for (const auto& [counter, command] : kWheelColumns)
-                    sum += WheelCurve::counted(run, counter, command, motor)
-                               .strays_from(WheelCurve::commanded(run, command, {driver}));
-            return sum;
-        };
-        if (strays(MotorDriver::Exact) < strays(MotorDriver::Timer)) motor.driver = MotorDriver::Exact;
+        double from_timer = 0.0, from_exact = 0.0;
+        for (const Run& run : experiment.runs)
+            for (const auto& [counter, command] : kWheelColumns) {
+                const WheelCurve counted = WheelCurve::counted(run, counter, command, motor);
+                from_timer += counted.strays_from(WheelCurve::commanded(run, command, motor));
+                from_exact += counted.strays_from(WheelCurve::commanded(run, command, {MotorDriver::Exact}));
+            }
+        if (from_exact < from_timer) motor.driver = MotorDriver::Exact;
         return motor;
     }
 

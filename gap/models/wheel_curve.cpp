@@ -44,6 +44,8 @@ double agenda_speed(double command) {
     return std::copysign(kTicksPerSecond / std::max(ticks, 1.0), command);
 }
 
+namespace {
+
 double timer_speed(double command) {
     const double speed = std::min(std::abs(command), kFastest);
     if (speed < 1.0) return 0.0;
@@ -55,6 +57,8 @@ double speed_of(double command, MotorDriver driver) {
     if (driver == MotorDriver::Exact) return command;
     return driver == MotorDriver::Agenda ? agenda_speed(command) : timer_speed(command);
 }
+
+}  // namespace
 
 WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const Motor& motor) {
     WheelCurve curve;

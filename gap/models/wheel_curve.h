@@ -13,12 +13,9 @@ namespace puckloop::gap {
 /// Speed (steps/s) that the original firmware's 0.1 ms agenda makes of a command: the emulated firmware gives
 /// exactly this, it is never fitted.
 double agenda_speed(double command);
-/// The speed that the project's own firmware makes of a command: whole counts of a 230.4 kHz timer a step.
-double timer_speed(double command);
-/// What drives the motors; Exact: a robot, or a script's, that makes of a command just this speed.
+/// What drives the motors; Timer: the project's own firmware, whole counts of a 230.4 kHz timer a step;
+/// Exact: a robot, or a script's, that makes of a command just this speed.
 enum class MotorDriver { Agenda, Timer, Exact };
-
-double speed_of(double command, MotorDriver driver);
 
 struct Motor {
     MotorDriver driver = MotorDriver::Agenda;
