@@ -126,7 +126,8 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
     if (!doubted.empty()) return {doubted, "gains by larger errors, not by the means it moves"};
     const auto outliers = those([&](std::size_t effect) { return is(effect, EffectRole::Outlier); });
     if (!outliers.empty() && push_pattern(study.experiment(), study.model(), fit.fitted.state))
-        return {{outliers.front()}, "keeps to a place, a command or a run, or goes back, and chance does not"};
+        return {{outliers.front()},
+                "keeps to a place, a command, a run or a direction, or goes back, and chance does not"};
     if (no_more_than_large_errors(study, fit, outliers))
         return {outliers, "explains no more than errors of which a few are larger do",
                 outliers.size() == fit.effects.size()};

@@ -1,7 +1,7 @@
 #pragma once
 // Pushes come by chance: when, where and which way has nothing to do with the robot, nor with the push
-// before. What keeps to a place, to a command or to some runs, or goes back as it came, is no push, but
-// something the model lacks that a jump imitates.
+// before. What keeps to a place, to a command, to some runs or to a direction, or goes back as it came, is no
+// push, but something the model lacks that a jump imitates.
 
 #include "gap/data/experiment.h"
 #include "gap/fit/fit.h"
@@ -14,8 +14,8 @@ namespace puckloop::gap {
 
 /// Most of the pushes lie where few should.
 struct PushPattern {
-    std::string where;      ///< "position x 0.4", "cmd left -400, cmd left in the previous row 400", "against
-                            ///< the push before"
+    std::string where;      ///< "position x 0.4", "cmd left -400, cmd left in the previous row 400", or a
+                            ///< direction
     double pushes = 0.0;    ///< there, each by its probability
     double all = 0.0;       ///< pushes found anywhere
     double expected = 0.0;  ///< there, if they came by chance

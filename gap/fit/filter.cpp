@@ -136,6 +136,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
     if (pushes) {
         out.mixed.assign(o.y.size(), 0.0);
         out.pushed.assign(o.y.size(), 0.0);
+        out.off.assign(o.y.size(), 0.0);
     }
     Walk walk{};
     Lever lever{};
@@ -188,6 +189,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             pushed.filter(error, arm, drift + gained, noise.memory, nu, p.lapse[i], width * width);
         out.z[i] = row.innovation;
         out.mixed[i] = row.cost + std::log(sd);
+        out.off[i] = row.off * sd;
         ++behind;
         look_back(i, kLookBack);
     }
@@ -247,6 +249,7 @@ void Innovations::reset(std::size_t rows) {
     role.assign(rows, RowRole::Plain);
     mixed.clear();
     pushed.clear();
+    off.clear();
 }
 
 Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {

@@ -35,6 +35,8 @@ struct Innovations {
     std::vector<double> mixed;
     /// Of the same: how likely each row was pushed, by what a few rows after it say.
     std::vector<double> pushed;
+    /// Of the same: how far each row is from where those before it had the sum go on, observable's unit.
+    std::vector<double> off;
 
     /// So many plain rows, their innovations to be written.
     void reset(std::size_t rows);

@@ -22,7 +22,7 @@ void PushedWalk::begin(double value, double guess, double unsure, const Lever& l
 PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, double memory, double tail,
                                    double chance, double push) {
     next_.clear();
-    double likely = 0.0, innovations = 0.0;
+    double likely = 0.0, innovations = 0.0, off = 0.0;
     for (const History& old : kept_)
         for (const bool pushed : {false, true}) {
             if (pushed && (chance <= 0 || push <= 0)) continue;
@@ -33,6 +33,7 @@ PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, doubl
             const double variance = history.walk.filter(
                 value, arm, history.lever, drift + (pushed ? push : 0.0), memory, tail, innovation);
             const double z = innovation / std::sqrt(variance);
+            if (!pushed) off += old.weight * innovation;
             history.weight *= std::exp(-(tail + 1) / 2 * std::log(1 + z * z / tail)) / std::sqrt(variance);
             likely += history.weight;
             innovations += history.weight * z;
@@ -49,7 +50,7 @@ PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, doubl
     for (History& history : kept_)
         history.weight = sum > 0 ? history.weight / sum : 1.0 / static_cast<double>(kept_.size());
     likely = std::max(likely, kLeastDensity);
-    return {-std::log(likely), innovations / likely};
+    return {-std::log(likely), innovations / likely, off};
 }
 
 double PushedWalk::pushed(unsigned back) const {

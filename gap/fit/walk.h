@@ -115,6 +115,7 @@ class PushedWalk {
     struct Row {
         double cost;        ///< minus ln density, without the density's constant
         double innovation;  ///< standardised, the mean over histories
+        double off;         ///< from where the row before had it go on, the mean over histories
     };
 
     void begin(double value, double guess, double unsure, const Lever& lever);

@@ -59,6 +59,11 @@ double StudentLaw::beyond(double chance) const {
     return boost::math::quantile(boost::math::complement(boost::math::students_t(degrees_), chance));
 }
 
+double rayleigh_tail(unsigned directions, double sum) {
+    const double n = directions, rest = std::max(n * n - sum * sum, 0.0);
+    return std::min(std::exp(std::sqrt(1 + 4 * n + 4 * rest) - (1 + 2 * n)), 1.0);
+}
+
 double binomial_tail(unsigned of, double share, unsigned count) {
     if (count == 0) return 1.0;
     if (count > of || !(share > 0)) return 0.0;

@@ -29,6 +29,9 @@ class StudentLaw {
   private:
     double degrees_, log_height_;
 };
+/// Chance that so many directions, each any way, add up to a sum this long (Rayleigh's test; Greenwood and
+/// Durand 1955, as in Mardia and Jupp, Directional Statistics, 2000; good to a few hundredths from five on).
+double rayleigh_tail(unsigned directions, double sum);
 /// P(X >= count) of a binomial variable, 0 <= share <= 1.
 double binomial_tail(unsigned of, double share, unsigned count);
 
