@@ -48,6 +48,21 @@ TEST_CASE("an effect of no size changes nothing, wherever it enters") {
     }
 }
 
+TEST_CASE("where a run begins is not seen of a drive, and is of a reading") {
+    for (const auto& bench : benches()) {
+        const gap::WrittenExperiment exact = bench->exact(kSeed);
+        gap::WrittenExperiment moved = exact;
+        const NoiseFloor noise = bench->floor().front();
+        for (gap::WrittenColumn& column : moved.runs.front().columns)
+            if (column.name == noise.column)
+                for (double& value : column.values)
+                    value += 5 * noise.sd;
+        INFO(bench->kind());
+        const double distance = distance_in_noise(moved, exact, bench->floor());
+        CHECK((distance > 0.1) != (std::string_view(bench->kind()) == "motion"));
+    }
+}
+
 TEST_CASE("fields are of size one and of every sort") {
     const gap::WrittenExperiment exact = benches()[1]->exact(kSeed);
     const auto covariates = covariates_of(exact);

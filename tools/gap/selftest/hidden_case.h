@@ -62,11 +62,13 @@ struct EffectInfo {
     std::string variant;  ///< of the experiment
 };
 
-/// Standard deviation of the noise of a measured column: the floor that strengths are told in. Of what
+/// Standard deviation of the noise of a measured column: the floor that strengths are stated in. Of what
 /// happens or not it is 1, so that the strength is the root of the share of rows that turn out otherwise.
 struct NoiseFloor {
     const char* column;
     double sd;
+    /// A run begins at any value (a drive's place and heading): what is the same in all its rows is not seen.
+    bool any_beginning = false;
 };
 
 /// All that can be hidden in one kind of experiment.

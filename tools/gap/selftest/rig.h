@@ -29,6 +29,10 @@ struct Rig {
 WrittenExperiment repeated(std::uint64_t seed, std::size_t least_runs,
                            const std::function<WrittenExperiment(std::uint64_t)>& exact);
 
+/// What differs in a column between two exact tables of a run, in units of its noise; empty where one has no
+/// such column.
+std::vector<double> difference_in_noise(const WrittenRun& with, const WrittenRun& without,
+                                        const NoiseFloor& noise);
 /// Root mean square of the difference between two exact experiments in units of the noise floor, of the
 /// column most affected.
 double distance_in_noise(const WrittenExperiment& with, const WrittenExperiment& without,

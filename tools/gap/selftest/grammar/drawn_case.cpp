@@ -172,14 +172,9 @@ std::vector<double> likenesses_of(const WrittenExperiment& with, const WrittenEx
     const auto difference = [&](const WrittenExperiment& one) {
         std::vector<double> all;
         for (const NoiseFloor& noise : floor)
-            for (std::size_t r = 0; r < runs; ++r) {
-                const WrittenColumn *a = one.runs[r].find(noise.column), *b = rest.runs[r].find(noise.column);
-                if (a == nullptr || b == nullptr) continue;
-                for (std::size_t k = 0; k < b->values.size(); ++k) {
-                    const double d = (a->values[k] - b->values[k]) / noise.sd;
+            for (std::size_t r = 0; r < runs; ++r)
+                for (const double d : difference_in_noise(one.runs[r], rest.runs[r], noise))
                     all.push_back(std::isfinite(d) ? d : 0.0);
-                }
-            }
         return all;
     };
     const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
