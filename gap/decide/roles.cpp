@@ -127,7 +127,8 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
     const auto outliers = those([&](std::size_t effect) { return is(effect, EffectRole::Outlier); });
     if (!outliers.empty() && push_pattern(study.experiment(), study.model(), fit.fitted.state))
         return {{outliers.front()},
-                "keeps to a place, a command, a run or a direction, or goes back, and chance does not"};
+                "keeps to a place, a command, a run or a direction, goes back, or shows in no row for sure; "
+                "pushes do not"};
     if (no_more_than_large_errors(study, fit, outliers))
         return {outliers, "explains no more than errors of which a few are larger do",
                 outliers.size() == fit.effects.size()};

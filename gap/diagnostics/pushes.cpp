@@ -1,12 +1,16 @@
 #include "gap/diagnostics/pushes.h"
 
+#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/push_directions.h"
 #include "gap/fit/filter.h"
 #include "gap/residual_model/free_form_cells.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/tails.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <string>
@@ -21,11 +25,15 @@ constexpr double kLeastPushes = 3.0;
 constexpr double kByChance = 1e-3;  // corrected p above which nothing is reported
 constexpr double kIsPush = 0.5;
 
+double sum_of(const std::vector<double>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
 /// What the rows of a model's pushed sums say.
 struct Pushed {
     const Observable* base = nullptr;  ///< the first of them; null: there is none
     std::vector<double> chance;        ///< that a row is pushed, as fitted
-    std::vector<double> pushed;        ///< how likely it was; one push shows in any of the sums
+    std::vector<double> pushed;        ///< how likely it was, one push shows in any of the sums
     std::map<std::string, std::vector<double>> moved;  ///< how far, by each sum, its unit
 };
 
@@ -73,43 +81,102 @@ std::vector<Push> pushes_of(const Experiment& experiment, const Pushed& rows) {
     return pushes;
 }
 
-}  // namespace
+/// The most unlikely of several questions, its chance corrected for how many they are (Bonferroni).
+class Look {
+  public:
+    void at(PushPattern one) {
+        asked_ += 1;
+        if (one.p_value < least_.p_value) least_ = std::move(one);
+    }
+    PushPattern least() const {
+        PushPattern found = least_;
+        found.p_value = std::min(asked_ * found.p_value, 1.0);
+        return found;
+    }
 
-std::optional<PushPattern> push_pattern(const Experiment& experiment, const Model& model,
-                                        const State& state) {
-    const Pushed rows = pushed_rows(model, state);
-    if (rows.base == nullptr) return std::nullopt;
-    PushPattern found;
-    found.all = std::accumulate(rows.pushed.begin(), rows.pushed.end(), 0.0);
-    const double hoped = std::accumulate(rows.chance.begin(), rows.chance.end(), 0.0);
-    if (found.all < kLeastPushes || !(hoped > 0)) return std::nullopt;
-    double tried = 0.0, least = 1.0;
-    const auto look = [&](double p, double pushes, double expected, const std::string& where) {
-        tried += 1;
-        if (p >= least) return;
-        least = p;
-        found.where = where;
-        found.pushes = pushes;
-        found.expected = expected;
-    };
+  private:
+    double asked_ = 0.0;
+    PushPattern least_;
+};
+
+/// Where many are, in cells of the covariates.
+PushPattern by_place(const Experiment& experiment, const Pushed& rows, double hoped) {
     Series places;
     places.run = rows.base->run;
     places.row = rows.base->row;
+    const double all = sum_of(rows.pushed);
+    Look look;
     for (const stats::Component& component : free_form_cells(experiment, places, rows.base->starts)) {
         const auto there = stats::sums_of_cells(component, [&](std::size_t i) { return rows.pushed[i]; }),
                    share =
                        stats::sums_of_cells(component, [&](std::size_t i) { return rows.chance[i] / hoped; });
         for (std::size_t c = 0; c < there.size(); ++c)
             if (share[c] > 0)
-                look(stats::binomial_tail(static_cast<unsigned>(std::ceil(found.all)), share[c],
-                                          static_cast<unsigned>(std::floor(there[c]))),
-                     there[c], share[c] * found.all, component.where[c]);
+                look.at({component.where[c], there[c], all, share[c] * all,
+                         stats::binomial_tail(static_cast<unsigned>(std::ceil(all)), share[c],
+                                              static_cast<unsigned>(std::floor(there[c])))});
     }
+    return look.least();
+}
+
+/// Are some runs pushed more often than others? Chi squared, by drawn runs for as many pushes.
+PushPattern by_run(const Pushed& rows, double hoped) {
+    std::map<std::uint32_t, double> share;  // of all that are expected
+    std::vector<std::uint32_t> pushed;      // the run of each
+    for (std::size_t i = 0; i < rows.pushed.size(); ++i) {
+        share[rows.base->run[i]] += rows.chance[i] / hoped;
+        if (rows.pushed[i] > kIsPush) pushed.push_back(rows.base->run[i]);
+    }
+    const auto all = static_cast<double>(pushed.size());
+    const auto unevenness = [&](std::map<std::uint32_t, double> counts) {
+        double sum = 0.0;
+        for (const auto& [run, part] : share)
+            if (part > 0) sum += std::pow(counts[run] - all * part, 2) / (all * part);
+        return sum;
+    };
+    std::map<std::uint32_t, double> counts;
+    for (const std::uint32_t run : pushed)
+        counts[run] += 1;
+    const auto drawn = [&](RandomStream& random) {
+        std::map<std::uint32_t, double> other;
+        for (std::size_t k = 0; k < pushed.size(); ++k) {
+            double left = random.uniform();
+            auto run = share.begin();
+            while (std::next(run) != share.end() && (left -= run->second) >= 0)
+                ++run;
+            other[run->first] += 1;
+        }
+        return unevenness(std::move(other));
+    };
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
+    if (most == counts.end()) return {};
+    return {"some runs", most->second, all, all * share[most->first],
+            stats::null_p(unevenness(counts), all, drawn, {}, "pushes by run")};
+}
+
+}  // namespace
+
+std::optional<PushPattern> push_pattern(const Experiment& experiment, const Model& model,
+                                        const State& state) {
+    const Pushed rows = pushed_rows(model, state);
+    if (rows.base == nullptr) return std::nullopt;
+    const double hoped = sum_of(rows.chance);
+    if (!(hoped > 0)) return std::nullopt;
+    double seen = 0.0;
+    for (const double one : rows.pushed)
+        seen += one > kIsPush ? one : 0.0;
+    if (seen < thresholds::kMeanShare * hoped)
+        return PushPattern{"rows that were as likely not pushed", hoped - seen, hoped, hoped - seen, 1.0};
+    if (sum_of(rows.pushed) < kLeastPushes) return std::nullopt;
+    Look look;
+    look.at(by_place(experiment, rows, hoped));
+    Look ways;
     for (const PushDirection& one : push_directions(pushes_of(experiment, rows)))
-        look(one.p_value, one.pushes, one.expected, one.where);
-    found.p_value = std::min(least * tried, 1.0);
-    if (found.p_value > kByChance) return std::nullopt;
-    return found;
+        ways.at({one.where, one.pushes, seen, one.expected, one.p_value});
+    look.at(ways.least());
+    look.at(by_run(rows, hoped));
+    const PushPattern found = look.least();
+    return found.p_value > kByChance ? std::nullopt : std::optional(found);
 }
 
 }  // namespace puckloop::gap
