@@ -70,7 +70,7 @@ void measure_motion(WrittenExperiment& experiment, const K&, const NoiseStyle& s
 const Rig<K>& motion_rig() {
     static const Rig<K> rig{
         "motion",
-        {{"x_m", kPlaceNoise, true}, {"y_m", kPlaceNoise, true}, {"theta_rad", kAngleNoise, true}},
+        {{"x_m", kPlaceNoise, true}, {"y_m", kPlaceNoise, true}, {"theta_rad", kAngleNoise}},
         exact_motion,
         measure_motion,
         [](const MotionKnobs&, std::uint64_t, const std::string&) { return 0.0; }};
