@@ -64,6 +64,7 @@ std::vector<double> as_likely(const Study& study, const Fit& fit, std::size_t j,
 Eigen::MatrixXd left_out_by_block(const Blocks& blocks, const Eigen::MatrixXd& g,
                                   const Eigen::MatrixXd& inverse) {
     const Eigen::Index p = g.cols();
+    if (p == 0) return inverse;  // events alone have no noise that is fitted
     const Eigen::LLT<Eigen::MatrixXd> factor(inverse);
     if (factor.info() != Eigen::Success) return inverse;
     const Eigen::MatrixXd root = factor.matrixL();

@@ -89,3 +89,12 @@ TEST_CASE("where every message is lost the plainest loss is named") {
     CHECK(verdict.causes.front().name == "random_loss");
     CHECK(verdict.causes.front().parameters.front().high == 1.0);
 }
+
+TEST_CASE("where events alone were recorded and none is lost there is no effect") {
+    Experiment experiment = messages(1);
+    for (Run& run : experiment.runs) {
+        run.columns.erase("strength");
+        run.columns.erase("bearing_rad");
+    }
+    CHECK(analyse(experiment).decision == Decision::NoEffect);
+}
