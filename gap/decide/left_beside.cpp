@@ -1,5 +1,6 @@
 #include "gap/decide/left_beside.h"
 
+#include "gap/decide/rate_alone.h"
 #include "gap/decide/roles.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/scatter.h"
@@ -28,6 +29,38 @@ bool is_of(const std::string& form, const std::string& observable) {
     return form == observable || (form == "place" && (observable == "x_m" || observable == "y_m"));
 }
 
+/// nats that those of the forms and structures stand for which belong to observables that `is_moved` holds
+/// for.
+template <class IsMoved>
+double left_of(const std::vector<FreeForm>& forms, const std::vector<Leftover>& leftovers,
+               const IsMoved& is_moved) {
+    std::vector<FreeForm> own_forms;
+    std::vector<Leftover> own_leftovers;
+    std::ranges::copy_if(forms, std::back_inserter(own_forms),
+                         [&](const FreeForm& one) { return is_moved(one.observable); });
+    std::ranges::copy_if(leftovers, std::back_inserter(own_leftovers),
+                         [&](const Leftover& one) { return is_moved(one.observable); });
+    return std::max(gained_by_shape(own_forms), most_by_structure(own_leftovers));
+}
+
+/// Is more left of some events that are moved than all causes together know of them beyond one chance for
+/// all, which says nothing of when, where and to whom they happen?
+bool more_left_than_known(const Study& study, const Selection& selection, const std::vector<FreeForm>& forms,
+                          const std::vector<Leftover>& leftovers, const std::vector<std::string>& moved) {
+    const auto& observables = study.model().observables();
+    for (std::size_t o = 0; o < observables.size(); ++o) {
+        const std::string& own = observables[o].name;
+        if (observables[o].noise != NoiseKind::Event || !stats::contains(moved, own)) continue;
+        const double left = left_of(forms, leftovers, [&](const std::string& name) { return name == own; });
+        if (!(left > 0)) continue;
+        const double known = std::max(study.gain(selection.held_none, selection.held_chosen, o).sum -
+                                          gained_by_rate(study, selection, o),
+                                      0.0);
+        if (left > thresholds::kShareLeftOfEvents * (left + known)) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::vector<std::size_t> outweighed(const Study& study, const Selection& selection,
@@ -41,19 +74,15 @@ std::vector<std::size_t> outweighed(const Study& study, const Selection& selecti
         const auto is_moved = [&](const std::string& name) {
             return std::ranges::any_of(moved, [&](const std::string& one) { return is_of(name, one); });
         };
-        std::vector<FreeForm> own_forms;
-        std::vector<Leftover> own_leftovers;
-        std::ranges::copy_if(forms, std::back_inserter(own_forms),
-                             [&](const FreeForm& one) { return is_moved(one.observable); });
-        std::ranges::copy_if(leftovers, std::back_inserter(own_leftovers),
-                             [&](const Leftover& one) { return is_moved(one.observable); });
-        const double left = std::max(gained_by_shape(own_forms), most_by_structure(own_leftovers));
+        const double left = left_of(forms, leftovers, is_moved);
         const bool any_sum = std::ranges::any_of(observables, [&](const Observable& one) {
             return adds_up(one) && stats::contains(moved, one.name);
         });
         const double won = std::max(step.held.sum, 0.0);
         const double most = any_sum ? share : std::min(share, thresholds::kShareLeft);
-        if (!(left > most * (left + won)) || won >= least) continue;
+        const bool too_much =
+            left > most * (left + won) || more_left_than_known(study, selection, forms, leftovers, moved);
+        if (!too_much || won >= least) continue;
         least = won;
         weakest = {step.effect};
     }

@@ -22,6 +22,11 @@ inline constexpr double kShareLeft = 0.2;
 /// correction of the rest predicts as much again as a cause that stops short of it.
 inline constexpr double kShareLeftOfSums = 0.5;
 
+/// Of events, of what is left and what causes know beyond one chance for all rows (which any cause gains over
+/// a simulator that loses nothing): a cause that knows less of which events happen than is left is not the
+/// cause.
+inline constexpr double kShareLeftOfEvents = 0.5;
+
 /// Corrected p of a structure worth reporting, and of one that alone makes "no effect" untrue. With some
 /// hundred structures corrected together (Holm) a tail is carried on from 299 permutations by three moments,
 /// which is good to a factor of ten at best: of 252 experiments with nothing hidden six had a p below 1e-4,
@@ -48,9 +53,9 @@ inline constexpr std::size_t kRunsThatJudge = 3;
 /// Runs below which there are no two halves to confirm on: each half needs two runs to be judged by.
 inline constexpr std::size_t kRunsToConfirm = 4;
 
-/// Of the step that readings keep to: an effect that moves them by less, where it acts, does not differ from how
-/// they became whole. Half a step, by which readings lie low that are cut off (a firmware's integer division)
-/// and not rounded, and 1 / sqrt(12), the sd of rounding itself.
+/// Of the step that readings keep to: an effect that moves them by less, where it acts, does not differ from
+/// how they became whole. Half a step, by which readings lie low that are cut off (a firmware's integer
+/// division) and not rounded, and 1 / sqrt(12), the sd of rounding itself.
 inline constexpr double kRounding = 0.5 + 0.2887;
 
 // Selection. BIC screens, what decides is the held-out score (gap/evidence/criterion.h).

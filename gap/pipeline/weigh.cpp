@@ -1,5 +1,6 @@
 #include "gap/pipeline/weigh.h"
 
+#include "gap/decide/rate_alone.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/evidence/criterion.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace puckloop::gap {
 
@@ -19,14 +21,28 @@ double cost_at(const Study& study, const State& state) {
     return cost_of(study.model(), state, study.model().predicted(state.values));
 }
 
-/// Does a parameter make much of what is gained? Of an effect with several, one may stop at its end beside
-/// the one that explains. With it back at neutral and nothing else fitted again, this errs towards yes.
+/// What one chance of each kind of event takes off the cost of the simulator as it is.
+double lowered_by_rates(const Study& study, const State& none) {
+    const auto costs = costs_at(study.model(), none, study.model().predicted(none.values));
+    double lowered = 0.0;
+    for (std::size_t o = 0; o < costs.size(); ++o) {
+        const auto& rows = costs[o].cost;
+        lowered +=
+            lowered_by_rate(study.model().observables()[o], std::accumulate(rows.begin(), rows.end(), 0.0));
+    }
+    return lowered;
+}
+
+/// Does a parameter make much of what is gained, of events beyond one chance for all? Of an effect with
+/// several, one may stop at its end beside the one that explains. With it back at neutral and nothing else
+/// fitted again, this errs towards yes.
 bool carries(const Study& study, const Chosen& chosen, const Freed& freed) {
     const auto index = freed.index;
     State without = chosen.final.fitted.state;
     without.values[index] = study.model().parameters()[index].neutral;
+    const State& begun = chosen.selection.none.fitted.state;
     const double best = cost_at(study, chosen.final.fitted.state),
-                 none = cost_at(study, chosen.selection.none.fitted.state);
+                 none = cost_at(study, begun) - lowered_by_rates(study, begun);
     return cost_at(study, without) - best > thresholds::kShareLeft * (none - best);
 }
 
