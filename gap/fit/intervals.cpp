@@ -16,8 +16,9 @@ constexpr double kSide = 0.95;  // of a 90 % interval
 constexpr double kSoftEdge =
     0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie three of these on
 constexpr int kLooks = 48;
-constexpr double kLeastRest = 0.5;  // of the information, at least, that is left without a block
-constexpr double kNearest = 1e-3;   // of the reach, the first look
+constexpr double kLeastRest = 0.5;      // of the information, at least, that is left without a block
+constexpr double kNearest = 1e-3;       // of the reach, the first look
+constexpr double kWorthFitting = 30.0;  // nats: what a fit that begins beside a period's alias may win
 
 /// A threshold between two speeds that were tried moves no row until it meets one of them: slopes say nothing
 /// of it, and what bounds it is where the likelihood falls off. How far from the fitted value, up (1) or down
@@ -36,25 +37,34 @@ double fall_off(const Study& study, const Fit& fit, std::size_t index, double qu
     return reach;
 }
 
-/// Where else a fit of this parameter was begun, if what it ends at there is as likely as the fit itself, as
-/// far as the interval goes: rows that cannot part two values (a period and its multiples) leave both.
+/// Where else a fit of this parameter was begun or may end, if what it ends at there is as likely as the fit
+/// itself, as far as the interval goes: rows that cannot part two values (a period and its multiples) leave
+/// both. Rising.
 std::vector<double> as_likely(const Study& study, const Fit& fit, std::size_t j, double lost, double reach) {
     const auto index = fit.freed[j].index;
     const double value = fit.fitted.state.values[index], here = fit.fitted.log_likelihood;
     std::vector<double> others;
+    const auto look_at = [&](double start, double least) {
+        State state = fit.fitted.state;
+        state.values[index] = start;
+        if (std::abs(start - value) <= reach || !(log_likelihood(study.model(), state) > least)) return;
+        const Fitted there = puckloop::gap::fit(study.model(), fit.freed, state, {}, kQuick);
+        const double other = there.state.values[index];
+        const bool known = std::ranges::any_of(others, [&](double one) {
+            return std::abs(one - other) <= 2 * std::max(reach, fit.freed[j].resolution);
+        });
+        if (!known && there.log_likelihood > here - lost && std::abs(other - value) > reach)
+            others.push_back(other);
+    };
     for (const std::size_t effect : fit.effects) {
         const Candidate& candidate = study.candidates()[effect];
         if (candidate.freed.size() != 1 || candidate.freed[0].index != fit.freed[j].index) continue;
-        for (const auto& start : candidate.starts) {
-            State state = fit.fitted.state;
-            state.values[index] = start[0];
-            if (std::abs(start[0] - value) <= reach) continue;
-            const Fitted there = puckloop::gap::fit(study.model(), fit.freed, state, {}, kQuick);
-            const double other = there.state.values[index];
-            if (there.log_likelihood > here - lost && std::abs(other - value) > reach)
-                others.push_back(other);
-        }
+        for (const auto& start : candidate.starts)
+            look_at(start[0], -INFINITY);
     }
+    for (const double start : study.model().aliases(study.model().parameters()[index].name, value))
+        if (start >= fit.freed[j].low && start <= fit.freed[j].high) look_at(start, here - kWorthFitting);
+    std::ranges::sort(others);
     return others;
 }
 
@@ -132,10 +142,11 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
         const double most = precision.quantile * freed.prior_sd;
         return {
             value - fall_off(study, fit, index, precision.quantile, std::min(most, value - freed.low), -1),
-            value + fall_off(study, fit, index, precision.quantile, std::min(most, freed.high - value), 1)};
+            value + fall_off(study, fit, index, precision.quantile, std::min(most, freed.high - value), 1),
+            {}};
     }
-    Interval interval{std::max(value - reach + shift, freed.low),
-                      std::min(value + reach + shift, freed.high)};
+    Interval interval{
+        std::max(value - reach + shift, freed.low), std::min(value + reach + shift, freed.high), {}};
     const double lost = precision.quantile * precision.quantile / 2;
     // All of a share is an end of what there is, where slopes say nothing of what lies beyond: it belongs to
     // the interval unless the likelihood falls off before it.
@@ -144,7 +155,8 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
         all.values[index] = 1.0;
         if (log_likelihood(study.model(), all) > fit.fitted.log_likelihood - lost) interval.high = 1.0;
     }
-    for (const double other : as_likely(study, fit, j, lost, reach)) {
+    interval.as_likely = as_likely(study, fit, j, lost, reach);
+    for (const double other : interval.as_likely) {
         interval.low = std::max(std::min(interval.low, other - reach), freed.low);
         interval.high = std::min(std::max(interval.high, other + reach), freed.high);
     }

@@ -21,6 +21,7 @@ Precision precision_of(const Study& study, const Fit& fit);
 /// The 90 % interval of the fit's freed parameter `j`, within its plausible range.
 struct Interval {
     double low = 0.0, high = 0.0;
+    std::vector<double> as_likely;  ///< single values apart from the fitted one that fit as well, rising
 };
 Interval interval_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j);
 

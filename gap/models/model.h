@@ -115,6 +115,10 @@ class Model {
     /// Where the data itself suggests that a fit of this parameter begins; mostly nowhere.
     virtual std::vector<double> starts(std::string_view) const { return {}; }
 
+    /// Other values of this parameter that rows may be unable to part from `value`: of a period those that
+    /// meet the rows alike. To be tried; mostly none.
+    virtual std::vector<double> aliases(std::string_view, double) const { return {}; }
+
     /// Parameters of the simulator that the model took from the data without fitting them, where they are not
     /// neutral.
     virtual std::map<std::string, double> implied() const { return {}; }

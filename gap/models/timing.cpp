@@ -28,10 +28,14 @@ constexpr double kBaud = 115200;
 constexpr double kBits = 10;              // a byte on the line
 constexpr double kTolerance = 0.02;       // error of the rate that a receiver stands
 constexpr double kLongestBatch = 0.5;     // s, looked for
+constexpr double kEven = 1e-3;            // coherence that even frames lack for their clocks' rounding
+constexpr double kLittle = 0.05;          // of what frames lack of keeping to a batch by themselves
 constexpr double kAsGood = 0.9;           // share of the coherence that noise would leave
 constexpr double kNeighbour = 1.01;       // nearer is the same peak
 constexpr std::size_t kTried = 3;         // peaks
 constexpr double kShortestBatch = 0.001;  // s
+constexpr double kLongestAlias = 1.0;     // s: the longest that is believed of a batch
+constexpr int kMostTimes = 10;            // of a batch: its multiples and parts that are tried
 constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
 constexpr double kWhole = 0.999;
 constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
@@ -105,14 +109,24 @@ class TimingModel final : public ModelOf<Numbers> {
         if (parameter != "timing.batch") return {};
         std::vector<double> seen, expected;
         const Observable& o = arrivals();
+        const std::vector<double> ready = arrivals_ready(nominal());
         for (std::size_t i = 1; i < o.y.size(); ++i)
             if (o.starts[i] == 0) {
                 seen.push_back(o.y[i] - o.y[i - 1]);
-                expected.push_back(robot_[i] + wire_[i] - robot_[i - 1] - wire_[i - 1]);
+                expected.push_back(ready[i] - ready[i - 1]);
             }
         std::vector<std::pair<double, double>> peaks;  // score, batch
+        double least_left = kLittle, longest = 0.0;
         for (double batch = kLongestBatch; batch > shortest_; batch /= 1.003) {
-            const double score = keep_to(seen, batch) - std::max(keep_to(expected, batch), 0.0);
+            const double kept = keep_to(seen, batch), kept_anyway = std::max(keep_to(expected, batch), 0.0),
+                         score = kept - kept_anyway;
+            // Frames that are ready at nearly even times keep nearly to a long batch by themselves: the
+            // longest that leaves little of that "nearly" has them in its hands, as its parts have.
+            const double left = (1 - kept) / (1 - kept_anyway + kEven);
+            if (left < least_left && (longest == 0.0 || longest < kNeighbour * batch)) {
+                least_left = left;
+                longest = batch;
+            }
             if (!peaks.empty() && peaks.back().second < kNeighbour * batch) {
                 if (score > peaks.back().first) peaks.back() = {score, batch};
             } else {
@@ -129,12 +143,32 @@ class TimingModel final : public ModelOf<Numbers> {
             finest = std::min(finest, batch);
         }
         if (!peaks.empty()) found.push_back(refined(finest));
-        std::vector<double> ready;
-        for (std::size_t i = 0; i < robot_.size(); ++i)
-            ready.push_back(robot_[i] + wire_[i]);
+        if (longest > 0.0) found.push_back(refined(longest));
         const auto fine = beats_of_waits(o, ready, shortest_, std::max(usual_step(robot_), kPeriod / 10));
         found.insert(found.end(), fine.begin(), fine.end());
         return found;
+    }
+
+    /// Frames at even times meet two batches alike whose rates differ by a multiple of their own rate (as a
+    /// wheel on film seems to stand), and those at times of a batch's multiple meet its parts as well.
+    std::vector<double> aliases(std::string_view parameter, double value) const override {
+        if (parameter != "timing.batch" || !(value > 0)) return {};
+        std::vector<double> all;
+        const auto take = [&](double batch) {
+            if (batch < shortest_ || batch > kLongestAlias) return;
+            // A rate's error is a larger share of a lower rate.
+            all.push_back(is_fine_batch(batch) ? batch
+                                               : nearest_beat(nearest_beat(batch, 1e-5, 30), 1e-6, 15));
+        };
+        for (int times = 2; times <= kMostTimes; ++times) {
+            take(value * times);
+            take(value / times);
+        }
+        const double rate = 1 / usual_step(arrivals_ready(nominal()));
+        if (!std::isfinite(rate)) return all;
+        for (double other = std::remainder(1 / value, rate); other <= 1 / shortest_; other += rate)
+            if (other > 0) take(1 / other);
+        return all;
     }
 
   private:
@@ -182,17 +216,17 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     /// The batch near by that the clock itself keeps to.
-    double refined(double batch) const {
-        for (const double step : {1e-5, 1e-6}) {
-            const double middle = batch;
-            const int reach = step > 5e-6 ? 500 : 15;
-            double best = 0.0;
-            for (int k = -reach; k <= reach; ++k) {
-                const double power = beat_of_clock(middle * (1 + step * k));
-                if (power <= best) continue;
-                best = power;
-                batch = middle * (1 + step * k);
-            }
+    double refined(double batch) const { return nearest_beat(nearest_beat(batch, 1e-5, 500), 1e-6, 15); }
+
+    /// Of `reach` steps, each so much of the batch, to either side.
+    double nearest_beat(double batch, double step, int reach) const {
+        const double middle = batch;
+        double best = 0.0;
+        for (int k = -reach; k <= reach; ++k) {
+            const double power = beat_of_clock(middle * (1 + step * k));
+            if (power <= best) continue;
+            best = power;
+            batch = middle * (1 + step * k);
         }
         return batch;
     }

@@ -42,7 +42,8 @@ FittedParameter parameter_of(const Study& study, const Fit& fit, const Precision
             interval.low,
             interval.high,
             parameter.neutral,
-            parameter.simulator || overlay_takes(parameter.name)};
+            parameter.simulator || overlay_takes(parameter.name),
+            interval.as_likely};
 }
 
 Cause cause_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t candidate,

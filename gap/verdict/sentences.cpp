@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kLeastBits = 0.1;  // of one: an experiment that promises less would not tell
 
+constexpr std::size_t kMostListed = 10;  // values that fit as well, in words
+
 constexpr double kDegree = 57.29577951308232;
 
 std::string listed(const std::vector<std::string>& words, const char* last) {
@@ -21,6 +23,18 @@ std::string listed(const std::vector<std::string>& words, const char* last) {
     for (std::size_t i = 0; i < words.size(); ++i)
         text += (i == 0 ? "" : i + 1 == words.size() ? fmt::format(" {} ", last) : ", ") + words[i];
     return text;
+}
+
+/// "; 25 ms, 50 ms and 29 other single values between fit as well"
+std::string others_words(const FittedParameter& p) {
+    std::vector<std::string> words;
+    // The largest first: of a period's parts there are many.
+    for (auto one = p.as_likely.rbegin(); one != p.as_likely.rend() && words.size() < kMostListed; ++one)
+        words.push_back(quantity(*one, p.unit));
+    if (words.empty()) return "";
+    if (p.as_likely.size() > words.size())
+        words.push_back(fmt::format("{} other single values", p.as_likely.size() - words.size()));
+    return fmt::format("; {} fit{} as well", listed(words, "and"), p.as_likely.size() == 1 ? "s" : "");
 }
 
 }  // namespace
@@ -43,8 +57,8 @@ std::string cause_sentence(const Cause& cause) {
         const double largest = std::max({std::abs(p.value), std::abs(p.low), std::abs(p.high)});
         const auto shown = [&](double value, int digits) { return quantity(value, p.unit, digits, largest); };
         const int more = stats::more_digits(p.low, (p.low + p.high) / 2, p.high, shown);
-        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, shown(p.value, more), shown(p.low, more),
-                                      shown(p.high, more)));
+        figures.push_back(fmt::format("{} = {} ({} to {}{})", p.name, shown(p.value, more),
+                                      shown(p.low, more), shown(p.high, more), others_words(p)));
     }
     if (!figures.empty()) text += ": " + listed(figures, "and");
     text += ".";

@@ -19,7 +19,8 @@ static void to_json(Json& json, const FittedParameter& p) {
             {"high", p.high},
             {"unit", p.unit},
             {"neutral", p.neutral},
-            {"in_simulator", p.in_simulator}};
+            {"in_simulator", p.in_simulator},
+            {"as_likely", p.as_likely}};
 }
 
 static void to_json(Json& json, const Cause& cause) {

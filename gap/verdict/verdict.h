@@ -24,6 +24,7 @@ struct FittedParameter {
     double value = 0.0, low = 0.0, high = 0.0;  ///< 90 % interval
     double neutral = 0.0;                       ///< the simulator's value, without the effect
     bool in_simulator = false;                  ///< `run --model` takes it; otherwise only [measurement]
+    std::vector<double> as_likely{};            ///< other single values that fit as well, rising
 };
 
 /// A named effect of the catalogue with its evidence.

@@ -265,3 +265,65 @@ TEST_CASE("many rows are looked at in part first, and say what few say", "[gap][
     for (const Trial& trial : selection.trials)
         CHECK((!trial.remark.empty() || trial.delta_bic != 0.0));
 }
+
+namespace {
+
+constexpr double kHandling = 0.0023;  // s: a frame of three is ready so much later
+constexpr int kReads = 12;            // for so many transfers before it
+
+/// Frames of a loop, handed over at multiples of `batch` (s); its period strays by up to `uneven` s.
+Experiment batched(double batch, double uneven) {
+    Experiment experiment;
+    experiment.kind = Kind::Timing;
+    experiment.folder = "made";
+    experiment.nominal["timing.i2c_stretch"] = kHandling / kReads;
+    for (int r = 0; r < 6; ++r) {
+        RandomStream random(7, "test/batches " + std::to_string(r));
+        Run run;
+        run.name = run.file = "run" + std::to_string(r);
+        run.rows = 200;
+        double robot = 0.0;
+        for (int k = 0; k < 200; ++k) {
+            const int reads = k % 3 == 0 ? kReads : 0;
+            const double ready = 0.132 + robot + reads * kHandling / kReads;
+            run.columns["i2c_reads"].push_back(reads);
+            run.columns["seq"].push_back(k);
+            run.columns["t_robot_s"].push_back(robot);
+            run.columns["t_host_s"].push_back(std::ceil(ready / batch) * batch + 1e-4 * random.normal());
+            robot += 0.1 + uneven * random.uniform();
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    return experiment;
+}
+
+/// The batch as it is fitted, and what else fits as well, s.
+std::pair<double, Interval> batch_of(const Experiment& experiment) {
+    const Study study(experiment, 1);
+    const Fit fit = study.fit_set({candidate(study, "batching")}, study.fit_none().fitted.state);
+    return {fit.fitted.state.values[fit.freed[0].index],
+            interval_of(study, fit, precision_of(study, fit), 0)};
+}
+
+}  // namespace
+
+TEST_CASE("of batches that meet even frames alike all are given", "[gap][fit]") {
+    for (const double batch : {0.010, 0.025, 0.05}) {
+        const auto [value, interval] = batch_of(batched(batch, 0.0));
+        INFO(batch << ": " << value << ", " << interval.low << " to " << interval.high);
+        for (const double one : {0.010, 0.025, 0.05, 0.1 / 3}) {
+            const auto is = [one](double other) { return std::abs(other - one) < 1e-5; };
+            CHECK((is(value) || std::ranges::any_of(interval.as_likely, is)));
+            CHECK((interval.low < one + 1e-5 && interval.high > one - 1e-5));
+        }
+    }
+}
+
+TEST_CASE("frames at uneven times part a batch from its multiples and parts", "[gap][fit]") {
+    for (const double batch : {0.010, 0.025, 0.05}) {
+        const auto [value, interval] = batch_of(batched(batch, 0.003));
+        INFO(batch << ": " << value);
+        CHECK(std::abs(value - batch) < 1e-5);
+        CHECK(interval.as_likely.empty());
+    }
+}
