@@ -7,6 +7,7 @@
 #include "gap/data/experiment.h"
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,15 @@ namespace puckloop::gap {
 /// later one out and says so as a caution. In kinds that are time series (motion, accelerometer, timing) only
 /// whole runs are taken out: two runs may well begin alike.
 void drop_copies(Experiment& experiment);
+
+/// Leaves out the rows that only repeat a reading with a new time, where each reading was logged a number of
+/// times in a row, and says so as a caution. Readings that agree as often when they do not follow each other
+/// (an instrument that stands still, at its end, or with noise below its step) stay. Not in series (motion,
+/// timing).
+void drop_repeats(Experiment& experiment);
+
+/// Takes rows (of all columns) out of a run.
+void take_out(Run& run, const std::set<std::size_t>& rows);
 
 /// In each run: a column with one value only is filled with it, other covariates are drawn on between their
 /// neighbours (temperature, battery, time) or held; where a truth or stimulus that varies is missing, what

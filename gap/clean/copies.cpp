@@ -44,16 +44,6 @@ std::vector<MeasuredRun> measured_runs(const Experiment& experiment,
     return runs;
 }
 
-void take_out(Run& run, const std::set<std::size_t>& rows) {
-    for (auto& [name, values] : run.columns) {
-        std::vector<double> kept;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            if (!rows.contains(i)) kept.push_back(values[i]);
-        values = std::move(kept);
-    }
-    run.rows -= rows.size();
-}
-
 /// "row 3" or "rows 3-7"
 std::string rows_text(std::size_t first, std::size_t count) {
     return count == 1 ? fmt::format("row {}", first + 1)
@@ -93,6 +83,16 @@ void drop_twins(Experiment& experiment, Run& run) {
 }
 
 }  // namespace
+
+void take_out(Run& run, const std::set<std::size_t>& rows) {
+    for (auto& [name, values] : run.columns) {
+        std::vector<double> kept;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (!rows.contains(i)) kept.push_back(values[i]);
+        values = std::move(kept);
+    }
+    run.rows -= rows.size();
+}
 
 void drop_copies(Experiment& experiment) {
     for (Run& run : experiment.runs)

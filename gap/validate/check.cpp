@@ -232,6 +232,7 @@ void check(Experiment& experiment, Problems* problems) {
     step([&] {
         fill_missing(experiment);
         drop_copies(experiment);
+        drop_repeats(experiment);
         check_runs(experiment);
         check_mixed(experiment);
         check_kind(experiment);
