@@ -5,6 +5,7 @@
 #include "gap/diagnostics/pushes.h"
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
+#include "gap/fit/noise.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/stats/series.h"
@@ -53,6 +54,31 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     return std::ranges::any_of(leftovers, sure) ? "explains scatter beside a structure that is left" : "";
 }
 
+/// How large something is in the rows where it acts, which may be few: those that it moves most count most.
+class Size {
+  public:
+    void add(double one) {
+        if (!std::isfinite(one)) return;
+        squares_ += one * one;
+        fourths_ += one * one * one * one;
+    }
+    double value() const { return squares_ > 0 ? std::sqrt(fourths_ / squares_) : 0.0; }
+
+  private:
+    double squares_ = 0.0, fourths_ = 0.0;
+};
+
+/// Does nothing but the width of its errors differ of observable `o`, beside its mean?
+bool widens_only(const Contrast& both, std::size_t o) {
+    const auto rest = [](Predicted one) {
+        one.mean.clear();
+        one.factor.clear();
+        one.extra.clear();
+        return one;
+    };
+    return rest(both.with[o]) == rest(both.without[o]);
+}
+
 /// Does a law of errors without a mechanism do as well as the effects that make single errors large?
 bool no_more_than_large_errors(const Study& study, const Fit& fit, const std::vector<std::size_t>& outliers) {
     const auto touched = scattered_by(study, fit, outliers);
@@ -88,22 +114,25 @@ double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
 
 bool within_rounding(const Study& study, const Fit& fit, std::size_t effect) {
     const Contrast both = contrast(study, fit, effect);
-    if (!both.moves_means()) return false;
-    if (study.candidates()[effect].effect->role != EffectRole::Mean && both.moves_more_than_means())
-        return false;
-    const auto &with = both.with, &without = both.without;
-    for (std::size_t o = 0; o < with.size(); ++o) {
+    const bool scatters =
+        both.moves_more_than_means() && study.candidates()[effect].effect->role != EffectRole::Mean;
+    if (!both.moves_means() && !scatters) return false;
+    for (std::size_t o = 0; o < both.with.size(); ++o) {
         const Observable& observable = study.model().observables()[o];
-        double squares = 0.0, fourths = 0.0;
+        Size moved, widened;
+        for (std::size_t i = 0; i < observable.y.size(); ++i)
+            moved.add(both.with[o].mean[i] - both.without[o].mean[i]);
+        const double most = thresholds::kRounding * observable.instrument.quantum;
+        if (moved.value() > most) return false;
+        if (!scatters || !both.moves_rest(o)) continue;
+        const NoiseParameters& noise = fit.fitted.state.noise[o];
+        if (!widens_only(both, o) || !is_within_step(observable, noise)) return false;
         for (std::size_t i = 0; i < observable.y.size(); ++i) {
-            const double moved = with[o].mean[i] - without[o].mean[i];
-            if (!std::isfinite(moved)) continue;
-            squares += moved * moved;
-            fourths += moved * moved * moved * moved;
+            const double with = row_sd(observable, both.with[o], noise, i),
+                         without = row_sd(observable, both.without[o], noise, i);
+            widened.add(std::sqrt(std::abs(with * with - without * without)));
         }
-        // Rows that it moves most count most: it may act in few of them.
-        const double size = squares > 0 ? std::sqrt(fourths / squares) : 0.0;
-        if (size > thresholds::kRounding * observable.instrument.quantum) return false;
+        if (widened.value() > most) return false;
     }
     return true;
 }

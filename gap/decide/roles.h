@@ -22,8 +22,8 @@ struct OutOfRole {
 /// What a fit's effects gain by the means they move, of all they gain, an effect; NaN: it moves no mean.
 double mean_share(const Study& study, const Fit& fit, std::size_t effect);
 
-/// Does an effect only move means, and those by less than their rounding wherever it acts? Which way ties go,
-/// or whether readings are rounded down, is not known.
+/// Does an effect move means, or widen errors that lie within a step, by less than their rounding wherever it
+/// acts? Which way ties go, or whether readings are rounded down, is not known.
 bool within_rounding(const Study& study, const Fit& fit, std::size_t effect);
 
 /// `held`: of the fit. `leftovers`: structures left by it. Empty when all keep to their roles.

@@ -56,6 +56,12 @@ double row_sd(const Observable& o, const Predicted& p, const NoiseParameters& no
     return std::sqrt(std::max(p.mean[i] * (1 - p.mean[i]), kLeastVariance));
 }
 
+bool is_within_step(const Observable& o, const NoiseParameters& noise) {
+    const double step = o.instrument.quantum;
+    return o.noise == NoiseKind::Carry &&
+           std::hypot(std::exp(noise.log_sd), step / std::sqrt(12.0)) < step / 2;
+}
+
 bool is_rounding(const Observable& o, const NoiseParameters& noise) {
     return o.noise == NoiseKind::Level &&
            std::exp(noise.log_sd) < thresholds::kFineNoise * o.instrument.quantum;

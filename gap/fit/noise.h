@@ -43,6 +43,10 @@ class RowSize {
 double row_sd(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
               std::size_t i);
 
+/// Are errors, rounding included, less than half a step wide? Then how readings fall on either side of a step
+/// shows in their means and sizes: a difference of less than a step may be its doing.
+bool is_within_step(const Observable& observable, const NoiseParameters& noise);
+
 /// Is a sum's own noise so much less than its rounding that its rows show the rounding only?
 bool is_rounding(const Observable& observable, const NoiseParameters& noise);
 

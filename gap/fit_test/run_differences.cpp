@@ -162,7 +162,8 @@ double best_tau(const std::vector<Score>& runs, double spread, std::size_t left_
     return best;
 }
 
-RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& scores) {
+/// `step`: what is smaller, in the observable's unit, is no difference.
+RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& scores, double step) {
     const auto& runs = scores.run;
     const std::size_t n = runs.size();
     RunDifference result;
@@ -188,6 +189,11 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
         high = std::max(high, run.estimate());
     }
     const auto freedom = static_cast<double>(n - 1);
+    const double reach = std::ranges::max(mode.shift) - std::min(std::ranges::min(mode.shift), 0.0);
+    if ((high - low) * reach < step) {
+        result.gain = 0.0;
+        return result;
+    }
     if (scores.freedom > 0) result.p_value = stats::fisher_tail(between / freedom, freedom, scores.freedom);
     result.shape =
         fmt::format("differs from run to run: {} {} to {} (sd {})", mode.what, quantity(low, mode.unit),
@@ -214,7 +220,8 @@ std::vector<RunDifference> run_differences(const Model& model, const State& stat
                 }))
                 continue;
             const ByRun sums = by_run(o, scores, answers, drawn);
-            if (sums.run.size() >= kLeastRuns) all.push_back(difference_of(o, mode, sums));
+            const double step = is_within_step(o, state.noise[k]) ? o.instrument.quantum : 0.0;
+            if (sums.run.size() >= kLeastRuns) all.push_back(difference_of(o, mode, sums, step));
             seen.push_back(std::move(answers));
         }
     }

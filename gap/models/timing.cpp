@@ -37,6 +37,8 @@ constexpr double kShortestBatch = 0.001;  // s
 constexpr double kLongestAlias = 1.0;     // s: the longest that is believed of a batch
 constexpr int kMostTimes = 10;            // of a batch: its multiples and parts that are tried
 constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
+constexpr double kFewSteps = 4.0;         // between quartiles: beyond, the middle half is the better
+constexpr double kNextSteps = 1.5;        // of a clock: between its next step and the one beyond
 constexpr double kWhole = 0.999;
 constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
 constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
@@ -181,6 +183,23 @@ class TimingModel final : public ModelOf<Numbers> {
         for (double& one : all)
             one *= kept;
         return all;
+    }
+
+    /// A stretch's own zero: the mean of the middle half, so that no single row decides. Of rows at two
+    /// neighbouring steps the quartiles are those steps: there the mean of all, drawn in to a step and a half
+    /// beyond them. (Neither jumps where a row passes a limit: slopes are taken of it.)
+    static double middle_of(std::vector<double> left, double quantum) {
+        std::sort(left.begin(), left.end());
+        const auto cut = static_cast<std::ptrdiff_t>(left.size() / 4);
+        const auto from = left.begin() + cut, to = left.end() - cut;
+        const double middle = std::accumulate(from, to, 0.0) / static_cast<double>(to - from);
+        if (!(quantum > 0)) return middle;
+        const double low = *from, high = *(to - 1), reach = kNextSteps * quantum;
+        double sum = 0.0;
+        for (const double one : left)
+            sum += std::clamp(one, low - reach, high + reach);
+        const double all = sum / static_cast<double>(left.size());
+        return middle + (all - middle) * std::min(1.0, kFewSteps * quantum / std::max(high - low, quantum));
     }
 
     static double usual_step(const std::vector<double>& clock) {
@@ -377,16 +396,10 @@ class TimingModel final : public ModelOf<Numbers> {
         p.extra.assign(batch >= shortest_ && is_fine_batch(batch) ? o.y.size() : 0, 0.0);
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
             if (batch < shortest_) {
-                // The stretch's own zero: the middle half of what is left, so that no single row decides.
                 std::vector<double> left;
                 for (std::size_t k = i; k < end; ++k)
                     left.push_back(o.y[k] - arrival[k]);
-                std::sort(left.begin(), left.end());
-                const std::size_t cut = left.size() / 4;
-                double sum = 0.0;
-                for (std::size_t k = cut; k < left.size() - cut; ++k)
-                    sum += left[k];
-                const double zero = sum / static_cast<double>(left.size() - 2 * cut);
+                const double zero = middle_of(std::move(left), o.instrument.quantum);
                 for (std::size_t k = i; k < end; ++k)
                     p.mean[k] = arrival[k] + zero;
                 continue;

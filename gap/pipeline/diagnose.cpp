@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -32,17 +33,24 @@ void name_placements(const Experiment& experiment, Diagnosis& found) {
     }
 }
 
-/// "run 8 has 0.91 rad where the fit makes 0.04 to 0.3": where a curve is farthest from its replicates.
-std::string farthest_place(const PredictiveCurve& curve, const std::string& unit) {
+/// Where a curve is farthest from its replicates, and by how much it lies outside, in its unit.
+std::pair<std::size_t, double> farthest_of(const PredictiveCurve& curve) {
     std::size_t place = 0;
-    double most = -1.0;
+    double most = -1.0, outside = 0.0;
     for (std::size_t k = 0; k < curve.x.size(); ++k) {
         const double width = curve.high[k] - curve.low[k],
                      off = std::max(curve.measured[k] - curve.high[k], curve.low[k] - curve.measured[k]);
         if (!(off > most * width)) continue;
         most = width > 0 ? off / width : off;
+        outside = off;
         place = k;
     }
+    return {place, outside};
+}
+
+/// "run 8 has 0.91 rad where the fit makes 0.04 to 0.3"
+std::string farthest_place(const PredictiveCurve& curve, const std::string& unit) {
+    const std::size_t place = farthest_of(curve).first;
     const std::string where =
         curve.categories.empty() ? fmt::format("{:.3g}", curve.x[place]) : curve.categories[place];
     return fmt::format("{:.3g}{} at {} {}, where the fit makes {:.3g} to {:.3g}", curve.measured[place],
@@ -51,14 +59,24 @@ std::string farthest_place(const PredictiveCurve& curve, const std::string& unit
 }
 
 /// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni.
-std::vector<Leftover> not_replicated(const std::vector<PredictiveCheck>& checks) {
+std::vector<Leftover> not_replicated(const Study& study, const State& state,
+                                     const std::vector<PredictiveCheck>& checks) {
+    const auto& observables = study.model().observables();
+    const auto is_step = [&](const PredictiveCheck& check, const PredictiveCurve& curve) {
+        for (std::size_t o = 0; o < observables.size(); ++o)
+            if (observables[o].name == check.observable)
+                return is_within_step(observables[o], state.noise[o]) &&
+                       farthest_of(curve).second < observables[o].instrument.quantum;
+        return false;
+    };
     std::vector<Leftover> all;
     double looks = 0.0;
     for (const PredictiveCheck& check : checks)
         for (const PredictiveCurve& curve : check.curves) {
             if (!curve.counts) continue;
             looks += 1;
-            all.push_back({check.observable, curve.name, curve.tail, farthest_place(curve, check.unit)});
+            if (!is_step(check, curve))
+                all.push_back({check.observable, curve.name, curve.tail, farthest_place(curve, check.unit)});
         }
     for (Leftover& one : all)
         one.p_value = std::min(1.0, looks * one.p_value);
@@ -83,7 +101,7 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
     if (std::ranges::any_of(observables, is_replicated)) {
         found.predictive = predictive_checks(study, chosen.final, !chosen.final.effects.empty(), seed);
-        const auto unlike = not_replicated(found.predictive);
+        const auto unlike = not_replicated(study, chosen.final.fitted.state, found.predictive);
         found.leftovers.insert(found.leftovers.end(), unlike.begin(), unlike.end());
     }
     found.structures = found.leftovers;
