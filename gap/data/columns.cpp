@@ -181,11 +181,15 @@ std::string unit_suffix(std::string_view unit) {
     return unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit);
 }
 
-std::string units_of(std::string_view si) {
+std::vector<std::string_view> unit_names(std::string_view si) {
     std::vector<std::string_view> names;
     for (const UnitInfo& unit : kUnits.at(si))
         if (*unit.name != '\0') names.emplace_back(unit.name);
-    return fmt::format("{}", fmt::join(names, ", "));
+    return names;
+}
+
+std::string units_of(std::string_view si) {
+    return fmt::format("{}", fmt::join(unit_names(si), ", "));
 }
 
 std::string_view kind_name(Kind kind) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace puckloop::gap {
 
@@ -41,7 +42,9 @@ struct ToSi {
 /// From `unit` to the SI unit `si`; nothing if they do not measure the same thing or one is unknown.
 std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si);
 
-/// The names of all units that are turned into `si`: "m, cm, mm, um, in, km".
+/// The names of all units that are turned into `si`.
+std::vector<std::string_view> unit_names(std::string_view si);
+/// The same as a text: "m, cm, mm, um, in, km".
 std::string units_of(std::string_view si);
 
 }  // namespace puckloop::gap

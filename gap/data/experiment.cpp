@@ -102,10 +102,10 @@ const ColumnInfo& known_column(Reader& reader, Kind kind, const std::string& nam
         "a column of docs/gap.md");
 }
 
-void read_columns(const TomlValue& table, Kind kind, Frame& frame) {
+void read_columns(const TomlValue& table, Experiment& experiment, Frame& frame) {
     Reader reader(frame.file, "columns", table);
     for (const auto& [name, value] : reader.everything()) {
-        const ColumnInfo& info = known_column(reader, kind, name);
+        const ColumnInfo& info = known_column(reader, experiment.kind, name);
         std::string from = name, unit;
         if (value.is_string()) {
             unit = std::get<std::string>(value.data);
@@ -123,6 +123,7 @@ void read_columns(const TomlValue& table, Kind kind, Frame& frame) {
             fail_at(frame.file, value.line, fmt::format("column {} cannot be in \"{}\"", name, unit),
                     units_of(info.unit));
         frame.origins[name] = {from, *to_si, value.line};
+        experiment.stated[name] = {from, unit};
     }
 }
 
@@ -310,7 +311,7 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
     experiment.source = top.text("source", "");
     experiment.licence = top.text("licence", "");
     read_assumed(top, experiment);
-    if (const TomlValue* table = top.table("columns")) read_columns(*table, experiment.kind, frame);
+    if (const TomlValue* table = top.table("columns")) read_columns(*table, experiment, frame);
     if (const TomlValue* table = top.table("nominal"))
         flatten(top, "", std::get<TomlTable>(table->data), experiment.nominal);
     if (const TomlValue* table = top.table("instrument")) read_instruments(*table, experiment, frame.file);

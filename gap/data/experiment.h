@@ -49,12 +49,18 @@ struct Instrument {
     double quantum = 0.0;  ///< step between two values
 };
 
+/// Of a column that [columns] names: where the files have it, and in which unit.
+struct Stated {
+    std::string from, unit;
+};
+
 struct Experiment {
     Kind kind = Kind::Proximity;
     std::filesystem::path folder;
     std::string title, robot, description, source, licence;
     std::map<std::string, double> nominal;  ///< model parameter -> value, where not the simulator's default
-    std::map<std::string, Instrument> instruments;  ///< by column
+    std::map<std::string, Instrument> instruments;      ///< by column
+    std::map<std::string, Stated, std::less<>> stated;  ///< by column
     std::vector<Run> runs;
     std::vector<std::string> assumed;   ///< truth columns that nobody measured: nothing can be named on them
     std::vector<std::string> cautions;  ///< what the reader noticed, in plain words; part of the verdict

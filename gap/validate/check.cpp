@@ -4,6 +4,7 @@
 #include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/data/problems.h"
+#include "gap/validate/units.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,6 +25,13 @@ constexpr std::size_t kRunRows = 10;  // a run this long whose measurement never
 constexpr double kLongestGap = 1e7;   // s
 constexpr double kManyClipped = 0.5, kMostClipped = 0.95;
 
+double furthest(const std::vector<double>& values) {
+    double most = 0.0;
+    for (const double value : values)
+        if (std::abs(value) > std::abs(most)) most = value;
+    return most;
+}
+
 /// Values that this quantity cannot have in its unit: a wrong unit or a swapped column. A few are glitches
 /// and count as missing.
 void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
@@ -39,7 +47,9 @@ void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
         refuse(experiment, run,
                fmt::format("{} is impossible: wrong unit or swapped columns ({} of {} rows)", value, outside,
                            present),
-               fmt::format("{:g} to {:g}{}", info.low, info.high, unit_suffix(info.unit)), first);
+               fmt::format("{:g} to {:g}{}{}", info.low, info.high, unit_suffix(info.unit),
+                           unit_remedy(experiment, info, furthest(values))),
+               first);
     experiment.caution("{}: {} in row {} is impossible ({} of {} rows): taken as missing", run.file, value,
                        first + 1, outside, present);
     std::ranges::replace_if(values, impossible, std::nan(""));
@@ -236,6 +246,7 @@ void check(Experiment& experiment, Problems* problems) {
         check_runs(experiment);
         check_mixed(experiment);
         check_kind(experiment);
+        check_units(experiment);
     });
 }
 
