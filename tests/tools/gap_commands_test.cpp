@@ -90,6 +90,19 @@ TEST_CASE("gap: options and folders that cannot be used end in one line and stat
     CHECK(!fs::exists(desk.path / "out"));
 }
 
+TEST_CASE("gap record: a change that the kind does not show is warned of") {
+    const Desk desk;
+    const auto unseen =
+        run_puckloop("gap record ground --brief --set robot.axle_length=0.054 --out " + desk.at("a"));
+    CHECK(unseen.status == 0);
+    CHECK_THAT(unseen.output,
+               Contains("warning: --set robot.axle_length=0.054: a recording of ground does not show "
+                        "robot.axle_length; kinds that do: motion"));
+    const auto seen = run_puckloop("gap record ground --brief --set ground.gain1=0.9 --out " + desk.at("b"));
+    CHECK(seen.status == 0);
+    CHECK_THAT(seen.output, !Contains("warning"));
+}
+
 TEST_CASE("gap: -v says each step in the host's log, a bad level is refused") {
     const Desk desk;
     const std::string floor = "gap " + desk.at("floor");

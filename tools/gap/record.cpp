@@ -11,6 +11,7 @@
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -56,6 +57,15 @@ void record_kind(const std::string& kind, const fs::path& out, const Request& re
     fmt::print("{}: kind {}, {} runs, {} rows\n", out.string(), kind, experiment.runs.size(), rows);
 }
 
+/// A change that the recording does not hold would make the verdict "no effect" look like a failure.
+void warn_of_unseen(const Request& request, const std::string& change) {
+    const std::string name = change.substr(0, change.find('='));
+    const auto kinds = gap::emulate::kinds_showing(name);
+    if (kinds.empty() || std::find(kinds.begin(), kinds.end(), request.kind) != kinds.end()) return;
+    fmt::print(stderr, "warning: --set {}: a recording of {} does not show {}; kinds that do: {}\n", change,
+               request.kind, name, fmt::join(kinds, ", "));
+}
+
 void record(const Request& request) {
     gap::emulate::RecordOptions options;
     options.tools = emulation_tools();
@@ -81,6 +91,8 @@ void record(const Request& request) {
     for (const std::string& kind : kinds)
         if (all || kind == request.kind) refuse_experiment_in(folder(kind));
     prepare_folder(request.out);
+    for (const std::string& change : request.changes)
+        if (!all) warn_of_unseen(request, change);
     for (const std::string& kind : kinds) {
         if (!all && kind != request.kind) continue;
         options.scratch = folder(kind) / "emulated";

@@ -232,3 +232,25 @@ TEST_CASE("every secret can be set, and at least twelve hide something") {
     CHECK(changes >= 40);
     CHECK(4 * unknown >= emulate::secrets().size());
 }
+
+TEST_CASE("what a change shows in is known from the catalogue and the sensors") {
+    using Kinds = std::vector<std::string>;
+    CHECK(emulate::kinds_showing("robot.axle_length") == Kinds{"motion"});
+    CHECK(emulate::kinds_showing("robot.wheel_radius_right") == Kinds{"motion"});
+    CHECK(emulate::kinds_showing("contact.mu") == Kinds{"motion"});
+    CHECK(emulate::kinds_showing("proximity.gain3") == Kinds{"proximity"});
+    CHECK(emulate::kinds_showing("proximity.amplitude") == Kinds{"proximity"});
+    CHECK(emulate::kinds_showing("accelerometer.motor_sag") == Kinds{"accelerometer"});
+    CHECK(emulate::kinds_showing("ir.stray") == Kinds{"rab"});
+    CHECK(emulate::kinds_showing("uart.cut") == Kinds{"timing"});
+    CHECK(emulate::kinds_showing("world.slope_x").empty());
+    // Whatever a secret robot was changed in shows in the kind that it is recorded by.
+    for (const emulate::Secret& secret : emulate::secrets())
+        for (const emulate::Setting& setting : secret.settings) {
+            std::string name = setting.parameter;
+            if (name.ends_with('*')) name.back() = '0';
+            INFO(name << " in " << secret.kind);
+            const Kinds kinds = emulate::kinds_showing(name);
+            CHECK((kinds.empty() || std::count(kinds.begin(), kinds.end(), secret.kind) == 1));
+        }
+}

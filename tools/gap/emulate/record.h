@@ -29,4 +29,8 @@ WrittenExperiment record(std::string_view kind, const RecordOptions& options);
 /// the Linux program (linux.*, host.*; s). Throws InputError, which names them all.
 void set_parameter(Robot& robot, const std::string& assignment);
 
+/// The kinds of recordings whose rows hold what this parameter of set_parameter() does: by the catalogue's
+/// effects that enter the simulator there, by the sensor that it belongs to. Empty: it is not known.
+std::vector<std::string> kinds_showing(std::string_view name);
+
 }  // namespace puckloop::gap::emulate
