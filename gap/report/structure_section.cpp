@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kClear = 0.05;         // corrected p
 constexpr std::size_t kMostLines = 14;  // an observable
+constexpr double kRounding = 1e-9;      // of an error: differences of equal numbers
 
 using stats::Finding;
 
@@ -27,18 +28,32 @@ double rms_of(std::vector<double> values) {
     return std::sqrt(stats::mean(values));
 }
 
+/// Rows that read the same sensor, receiver or thing follow each other.
+std::vector<int> chains_of(const std::vector<stats::Covariate>& covariates, std::size_t rows) {
+    std::vector<std::vector<double>> labels;
+    for (const stats::Covariate& c : covariates)
+        if (c.kind == stats::CovariateKind::Label) labels.push_back(c.value);
+    return labels.empty() ? std::vector<int>(rows, 0) : stats::stimulus_numbers(labels);
+}
+
 void add_floor(const Experiment& experiment, const Series& series, Table& table) {
+    const auto covariates = covariates_of(experiment, series);
     std::vector<std::vector<double>> stimuli;
-    for (const stats::Covariate& c : covariates_of(experiment, series))
+    for (const stats::Covariate& c : covariates)
         if (c.name != "time" && c.name != "order" && c.name != "session") stimuli.push_back(c.value);
-    stats::Series measured{series.measured, {series.run.begin(), series.run.end()}};
+    const std::vector<int> runs(series.run.begin(), series.run.end());
+    const std::size_t rows = series.measured.size();
     const bool sums = experiment.kind == Kind::Motion || experiment.kind == Kind::Timing;
-    const stats::NoiseFloor floor =
-        stimuli.empty() || sums ? stats::noise_floor(measured, std::vector<int>(series.measured.size(), -1))
-                                : stats::noise_floor(measured, stats::stimulus_numbers(stimuli));
+    const stats::NoiseFloor floor = stats::noise_floor(
+        {series.measured, runs},
+        stimuli.empty() || sums ? std::vector<int>(rows, -1) : stats::stimulus_numbers(stimuli));
+    // What happened or not has no size that a difference could give.
+    const double before = rms_of(left_over(series, Stage::Before));
+    double single = stats::row_to_row({left_over(series, Stage::Before), runs}, chains_of(covariates, rows));
+    if (single < kRounding * before) single = 0.0;
+    if (series.events) single = NAN;  // what happened or not has no size that a difference could give
     table.row({plain_observable(series.observable), series.unit, cell(floor.within_run),
-               cell(floor.between_runs), cell(floor.differences),
-               cell(rms_of(left_over(series, Stage::Before))),
+               cell(floor.between_runs), cell(single), cell(before),
                cell(rms_of(left_over(series, Stage::After)))});
 }
 
@@ -100,8 +115,9 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
             fmt::format("<h3>{}</h3>\n{}", physics::escaped(plain_observable(verdict.series[i].observable)),
                         tests_of(before[i], after[i]));
     return "<h2>Noise floor</h2>\n<p>Standard deviations: of repeats of one stimulus inside a run, of their "
-           "means from run to run, and from differences of successive rows; no model can do better than the "
-           "first two.</p>\n" +
+           "means from run to run, and of single rows, from what differs between successive rows of one "
+           "sensor or "
+           "receiver beyond what the simulator gives; no model can do better than the first two.</p>\n" +
            floor.html() + "<h2>Structure of what is left</h2>\n" + tests;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace puckloop::gap::stats {
 
@@ -17,7 +18,7 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
     for (std::size_t i = 0; i < measured.size(); ++i)
         if (std::isfinite(measured.value[i]) && stimulus[i] >= 0)
             values[stimulus[i]][measured.run[i]].push_back(measured.value[i]);
-    NoiseFloor floor{NAN, NAN, NAN};
+    NoiseFloor floor{NAN, NAN};
     double squares = 0, freedom = 0, between_squares = 0, between_freedom = 0;
     for (const auto& [number, by_run] : values) {
         std::vector<double> means;
@@ -36,12 +37,19 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
     }
     if (freedom > 0) floor.within_run = std::sqrt(squares / freedom);
     if (between_freedom > 0) floor.between_runs = std::sqrt(between_squares / between_freedom);
-    std::vector<double> second;
-    for (std::size_t i = 2; i < measured.size(); ++i)
-        if (measured.run[i] == measured.run[i - 2])
-            second.push_back(measured.value[i] - 2 * measured.value[i - 1] + measured.value[i - 2]);
-    if (second.size() >= 8) floor.differences = robust_scale(second) / std::sqrt(kSecondDifference);
     return floor;
+}
+
+double row_to_row(const Series& left, const std::vector<int>& chain) {
+    constexpr std::size_t kFewest = 8;
+    std::map<std::pair<int, int>, std::vector<double>> chains;
+    for (std::size_t i = 0; i < left.size(); ++i)
+        chains[{left.run[i], chain[i]}].push_back(left.value[i]);
+    std::vector<double> second;
+    for (const auto& [key, values] : chains)
+        for (std::size_t i = 2; i < values.size(); ++i)
+            second.push_back(values[i] - 2 * values[i - 1] + values[i - 2]);
+    return second.size() < kFewest ? NAN : robust_scale(second) / std::sqrt(kSecondDifference);
 }
 
 std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates) {

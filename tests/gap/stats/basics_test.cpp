@@ -76,10 +76,30 @@ TEST_CASE("the noise floor separates repeats in a run from runs") {
     const NoiseFloor floor = noise_floor(y, stimulus_numbers({distance}));
     CHECK(floor.within_run == Approx(0.5).epsilon(0.05));
     CHECK(floor.between_runs == Approx(2).epsilon(0.15));
-    CHECK(floor.differences == Approx(0.5).epsilon(0.15));
     const NoiseFloor none = noise_floor({{1, 2, 3}, {0, 0, 0}}, {0, 1, 2});
     CHECK(std::isnan(none.within_run));
     CHECK(std::isnan(none.between_runs));
+}
+
+TEST_CASE("the noise of single rows is that beside the model, of one sensor at a time") {
+    RandomStream random(4, "rows");
+    Series y;
+    std::vector<double> left;
+    std::vector<int> sensor;
+    for (int r = 0; r < 6; ++r)
+        for (int k = 0; k < 100; ++k) {
+            const double stimulus = 100 * random.normal(), noise = 0.5 * random.normal();
+            sensor.push_back(k % 2);
+            // One of two sensors is 20 off, which the model does not know.
+            left.push_back(20.0 * (k % 2) + noise);
+            y.value.push_back(stimulus + left.back());
+            y.run.push_back(r);
+        }
+    CHECK(row_to_row({left, y.run}, sensor) == Approx(0.5).epsilon(0.1));
+    // Over both sensors, or with the stimulus, it would be what differs between rows for a reason.
+    CHECK(row_to_row({left, y.run}, std::vector<int>(left.size(), 0)) > 5);
+    CHECK(row_to_row(y, sensor) > 50);
+    CHECK(std::isnan(row_to_row({{1, 2, 3}, {0, 0, 0}}, {0, 0, 0})));
 }
 
 TEST_CASE("bootstrap intervals over runs cover a mean whose runs have offsets") {
