@@ -1,6 +1,7 @@
 #include "gap/next_experiment/suggest.h"
 
 #include "gap/next_experiment/designs.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,6 +76,29 @@ double expected_nats(const Model& design, const State& truth, const State& other
 
 }  // namespace
 
+std::vector<Suggestion> ranked(const std::vector<Worth>& worths) {
+    constexpr double kSame = 0.01;    // share: neither rival minds what is different
+    constexpr double kEqual = 0.005;  // bits: no difference in what is printed
+    std::vector<Suggestion> out;
+    std::vector<std::size_t> kept;
+    for (const std::size_t i : stats::ordered(
+             worths.size(), [&](std::size_t a, std::size_t b) { return worths[a].nats > worths[b].nats; })) {
+        const double bits = bits_of(worths[i].nats);
+        if (bits < kLeastBits) break;
+        if (!kept.empty() && worths[i].nats > worths[kept.back()].nats * (1 - kSame)) {
+            kept.back() = std::min(kept.back(), i);  // the simpler ones come first in the grid
+            out.back().what = worths[kept.back()].what;
+            continue;
+        }
+        if (out.size() == kMostSuggestions) break;
+        const bool equal = !out.empty() && out.back().bits - bits < kEqual;
+        const int rank = equal ? out.back().rank : static_cast<int>(out.size()) + 1;
+        out.push_back({worths[i].what, bits, {}, rank});
+        kept.push_back(i);
+    }
+    return out;
+}
+
 std::vector<Suggestion> suggestions_for(const Study& study, const Selection& selection) {
     std::vector<Suggestion> out;
     if (selection.draws.empty()) return out;
@@ -82,21 +106,26 @@ std::vector<Suggestion> suggestions_for(const Study& study, const Selection& sel
     const auto name = [&](std::size_t candidate) {
         return std::string(study.candidates()[candidate].effect->name);
     };
-    for (const Design& design : designs_of(study.experiment())) {
+    const std::vector<Design> designs = designs_of(study.experiment());
+    std::size_t rows = 0;
+    for (const Design& design : designs)
+        rows = std::max(rows, design.experiment.rows());
+    std::vector<Worth> worths;
+    for (const Design& design : designs) {
         const auto model = make_model(design.experiment);
         const State chosen = carried(study.model(), selection.chosen.fitted.state, *model);
         const State rival = carried(study.model(), draw.fit.fitted.state, *model);
         const double nats = (expected_nats(*model, chosen, rival) + expected_nats(*model, rival, chosen)) / 2;
-        out.push_back({design.what, bits_of(nats), {name(draw.chosen), name(draw.rival)}});
+        // As often as the longest of them takes: what only has more rows tells no more.
+        worths.push_back(
+            {design.what, nats * static_cast<double>(rows) / static_cast<double>(design.experiment.rows())});
     }
-    std::stable_sort(out.begin(), out.end(),
-                     [](const Suggestion& a, const Suggestion& b) { return a.bits > b.bits; });
-    if (out.size() > kMostSuggestions) out.resize(kMostSuggestions);
+    const std::vector<std::string> between{name(draw.chosen), name(draw.rival)};
+    out = ranked(worths);
     // Where no design of the grid tells them apart, the catalogue's own advice stands alone.
-    if (out.empty() || out.front().bits < 0.05)
-        out.insert(out.begin(), {study.candidates()[draw.chosen].effect->separated_by,
-                                 0.0,
-                                 {name(draw.chosen), name(draw.rival)}});
+    if (out.empty()) out.push_back({study.candidates()[draw.chosen].effect->separated_by, NAN, {}});
+    for (Suggestion& one : out)
+        one.between = between;
     return out;
 }
 

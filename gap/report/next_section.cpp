@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap::report {
@@ -65,6 +67,20 @@ void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& step
     steps.emplace_back("Use no overlay: no parameter of the simulator stands for what was found.");
 }
 
+/// The best experiment; where others are as good, the laboratory may take the easiest.
+void record_next(const Verdict& verdict, std::vector<std::string>& steps) {
+    if (verdict.suggestions.empty()) return;
+    const Suggestion& best = verdict.suggestions.front();
+    std::string text = "Record next: " + best.what;
+    for (const Suggestion& other : verdict.suggestions)
+        if (&other != &best && other.rank == best.rank) text += "; or, as good: " + other.what;
+    if (std::isnan(best.bits) && std::any_of(steps.begin(), steps.end(), [&](const std::string& one) {
+            return one.find(best.what) != std::string::npos;
+        }))
+        return;  // the catalogue's advice, given above
+    steps.push_back(std::move(text));
+}
+
 }  // namespace
 
 std::string next_section(const Verdict& verdict) {
@@ -87,7 +103,7 @@ std::string next_section(const Verdict& verdict) {
         steps.emplace_back("Nothing has to be changed: within the noise of these runs the simulator agrees.");
         break;
     }
-    if (!verdict.suggestions.empty()) steps.push_back("Record next: " + verdict.suggestions.front().what);
+    record_next(verdict, steps);
     std::string out = "<h2>What to do next</h2>\n<ol class=\"next\">\n";
     for (const std::string& step : steps)
         out += fmt::format("<li>{}</li>\n", physics::escaped(step));

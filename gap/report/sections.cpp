@@ -132,10 +132,15 @@ std::string rivals_section(const Verdict& verdict) {
     if (!rivals.empty())
         out += "<h2>Rivals</h2>\n<p>ΔBIC below 6: the data does not tell the rival from the cause.</p>\n" +
                rivals.html();
-    Table next({"experiment", "tells between", "#expected information (bits)"});
+    Table next({"#rank", "experiment", "tells between", "#expected information (bits)"});
     for (const Suggestion& s : verdict.suggestions)
-        next.row({s.what, fmt::format("{}", fmt::join(s.between, ", ")), cell(s.bits)});
-    if (!next.empty()) out += "<h2>What to measure next</h2>\n" + next.html();
+        next.row(
+            {std::to_string(s.rank), s.what, fmt::format("{}", fmt::join(s.between, ", ")), cell(s.bits)});
+    if (!next.empty())
+        out +=
+            "<h2>What to measure next</h2>\n<p>Those of one rank are as good as each other; what would tell "
+            "nothing is left out.</p>\n" +
+            next.html();
     return out;
 }
 

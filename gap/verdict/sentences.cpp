@@ -12,10 +12,7 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kLeastBits = 0.1;  // of one: an experiment that promises less would not tell
-
 constexpr std::size_t kMostListed = 10;  // values that fit as well, in words
-
 constexpr double kDegree = 57.29577951308232;
 
 std::string listed(const std::vector<std::string>& words, const char* last) {
@@ -35,6 +32,15 @@ std::string others_words(const FittedParameter& p) {
     if (p.as_likely.size() > words.size())
         words.push_back(fmt::format("{} other single values", p.as_likely.size() - words.size()));
     return fmt::format("; {} fit{} as well", listed(words, "and"), p.as_likely.size() == 1 ? "s" : "");
+}
+
+/// What would tell rivals apart.
+std::string advice_sentence(const std::vector<Suggestion>& suggestions) {
+    if (suggestions.empty()) return "None of the experiments that were looked at would.";
+    const Suggestion& best = suggestions.front();
+    if (best.bits >= kLeastBits) return fmt::format("This experiment would: {}.", best.what);
+    return fmt::format("None of the experiments that were looked at would; the catalogue's advice is: {}.",
+                       best.what);
 }
 
 }  // namespace
@@ -124,14 +130,10 @@ std::string summary_of(const Verdict& verdict) {
         }
         for (const Rival& rival : verdict.rivals)
             names.push_back(rival.cause.title);
-        const bool advice = !verdict.suggestions.empty() && verdict.suggestions.front().bits >= kLeastBits;
         const std::string known =
             sure.empty() ? "" : fmt::format("The simulation is wrong because {}. ", listed(sure, "and"));
         return fmt::format("{}Cannot tell whether {}. {} {}", known, listed(names, "or"),
-                           advice
-                               ? fmt::format("This experiment would: {}.", verdict.suggestions.front().what)
-                               : "None of the experiments that were looked at would.",
-                           verdict.heldout.sentence);
+                           advice_sentence(verdict.suggestions), verdict.heldout.sentence);
     }
     case Decision::Unexplained:
         break;

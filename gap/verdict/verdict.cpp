@@ -50,7 +50,7 @@ static void to_json(Json& json, const HeldObservable& one) {
 }
 
 static void to_json(Json& json, const Suggestion& one) {
-    json = {{"what", one.what}, {"bits", one.bits}, {"between", one.between}};
+    json = {{"what", one.what}, {"bits", one.bits}, {"between", one.between}, {"rank", one.rank}};
 }
 
 static void to_json(Json& json, const Leftover& left) {

@@ -117,10 +117,13 @@ struct FreeForm {
 };
 
 struct Suggestion {
-    std::string what;   ///< in plain words
-    double bits = 0.0;  ///< expected information about which rival is true
+    std::string what;  ///< in plain words
+    /// Expected information about which rival is true; NaN: the catalogue's advice, which was not computed.
+    double bits = 0.0;
     std::vector<std::string> between;
+    int rank = 1;  ///< 1: the best; those of one rank are as good as each other
 };
+inline constexpr double kLeastBits = 0.1;  ///< of one: an experiment that promises less would not tell
 
 /// The experiment performed again on the emulator, without and with the overlay: measured against emulated.
 struct RerunObservable {

@@ -1,5 +1,6 @@
 // The verdict in words.
 
+#include "gap/next_experiment/suggest.h"
 #include "gap/pipeline/describe.h"
 #include "gap/verdict/sentences.h"
 
@@ -43,6 +44,27 @@ TEST_CASE("where nothing was added no figures of no change are given") {
     CHECK_THAT(gain_sentence({1, 1, 1.01, 0.9, 1.1, -2, -2.1, 0, 0, 6, 2, false, ""}),
                Contains("No gain is claimed: held-out error 101 %"));
     CHECK(plain_remark("needs a|b|c to vary") == "needs a or b or c to vary");
+}
+
+TEST_CASE("experiments that tell nothing or the same are not offered, equal ones share a rank") {
+    const auto list =
+        ranked({{"again", 3.0}, {"with motors on", 3.01}, {"far", 40.0}, {"near", 50.0}, {"other", 1e-5}});
+    REQUIRE(list.size() == 3);
+    CHECK(list[0].what == "near");  // both are sure to tell: more nats first, but one rank
+    CHECK(list[1].what == "far");
+    CHECK((list[0].rank == 1 && list[1].rank == 1));
+    CHECK(list[2].what == "again");  // motors change nothing that the rivals disagree about
+    CHECK(list[2].rank == 3);
+    CHECK(ranked({{"nothing", 0.0}, {"either", 1e-6}}).empty());
+}
+
+TEST_CASE("where nothing tells rivals apart the catalogue's advice is called that") {
+    Verdict verdict;
+    verdict.decision = Decision::CannotTell;
+    verdict.suggestions = {{"turn the robot", NAN, {}}};
+    CHECK_THAT(summary_of(verdict), Contains("looked at would; the catalogue's advice is: turn the robot."));
+    verdict.suggestions = {{"turn the robot", 0.7, {}}};
+    CHECK_THAT(summary_of(verdict), Contains("This experiment would: turn the robot."));
 }
 
 TEST_CASE("sums and frames of a drive have plain names") {

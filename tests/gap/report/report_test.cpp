@@ -186,4 +186,9 @@ TEST_CASE("every decision opens the page with what to do next") {
     CHECK_THAT(steps(Decision::CannotTell), Contains("another &lt;surface&gt;"));
     verdict.suggestions = {{"ten more runs", 0.4, {}}};
     CHECK_THAT(steps(Decision::NoEffect), Contains("Record next: ten more runs"));
+    verdict.suggestions.push_back({"a longer run", 0.4, {}, 1});
+    verdict.suggestions.push_back({"another floor", 0.2, {}, 3});
+    CHECK_THAT(steps(Decision::NoEffect),
+               Contains("Record next: ten more runs; or, as good: a longer run<") &&
+                   !Contains("another floor"));
 }
