@@ -3,6 +3,7 @@
 #include "gap/begin/expected_time.h"
 #include "gap/data/problems.h"
 #include "gap/fit/study.h"
+#include "gap/stats/series.h"
 #include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,18 @@ namespace {
 
 constexpr double kWithin = 3.0;  // factor: what is left and how many causes there are is not known before
 
+/// "frame_ok is 1 in every row", where all that a cause could change is an event that was always alike; else
+/// empty.
+std::string never_happened(const Study& study, const Candidate& candidate) {
+    std::vector<std::string> events;
+    for (const std::size_t o : study.moved_by(candidate)) {
+        const Observable& one = study.model().observables()[o];
+        if (one.noise != NoiseKind::Event || one.y.empty() || stats::varies(one.y)) return {};
+        events.push_back(fmt::format("{} is {:g} in every row", one.name, one.y.front()));
+    }
+    return fmt::format("{}", fmt::join(events, ", "));
+}
+
 }  // namespace
 
 Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
@@ -26,8 +39,10 @@ Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
         attempt(&problems, [&] {  // [nominal] is the model's to check
             const Study study(*ready.experiment, 1, threads);
             for (const Candidate& candidate : study.candidates()) {
-                auto& causes =
-                    candidate.remark.empty() ? ready.looked_for : ready.blind[plain_remark(candidate.remark)];
+                const std::string absent = candidate.remark.empty() ? never_happened(study, candidate) : "";
+                auto& causes = !candidate.remark.empty() ? ready.blind[plain_remark(candidate.remark)]
+                               : !absent.empty()         ? ready.absent[absent]
+                                                         : ready.looked_for;
                 causes.emplace_back(candidate.effect->name);
             }
             ready.seconds = expected_seconds(*ready.experiment, threads);
@@ -52,6 +67,8 @@ std::string readiness_text(const Readiness& ready) {
                                   ready.problems.size(), ready.problems.size() == 1 ? "" : "s");
     for (const auto& [why, names] : ready.blind)
         text += fmt::format("cannot be found: {} ({})\n", fmt::join(names, ", "), why);
+    for (const auto& [why, names] : ready.absent)
+        text += fmt::format("did not happen: {} ({})\n", fmt::join(names, ", "), why);
     text += fmt::format("can be found: {}\n", fmt::join(ready.looked_for, ", "));
     return text +
            fmt::format(

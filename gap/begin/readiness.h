@@ -17,7 +17,8 @@ struct Readiness {
     std::vector<std::string> problems;
     std::optional<Experiment> experiment;  ///< as far as it could be read
     std::vector<std::string> looked_for;   ///< names of the catalogue's causes that can be tried
-    std::map<std::string, std::vector<std::string>> blind;  ///< of the others, by why they cannot be found
+    std::map<std::string, std::vector<std::string>> blind;   ///< of the others, by why they cannot be found
+    std::map<std::string, std::vector<std::string>> absent;  ///< that did not happen, by what shows it
     double seconds = 0.0;  ///< expected for the verdict; 0 where it cannot be used
 };
 

@@ -35,9 +35,10 @@ struct Effect {
     int number;         ///< in the sheet of effects this catalogue follows
     const char* title;  ///< plain words, as a sentence would name it
     std::vector<EffectParameter> parameters;
-    const char* enters;                ///< where it enters the simulator
-    const char* separated_by;          ///< the experiment that tells it from those that can look the same
-    std::vector<const char*> needs{};  ///< columns that must be there and vary; "a|b": one of them
+    const char* enters;        ///< where it enters the simulator
+    const char* separated_by;  ///< the experiment that tells it from those that can look the same
+    /// Columns that must be there and vary; "a|b": one of them; "+a": it must be there, varying or not.
+    std::vector<const char*> needs{};
     EffectRole role = EffectRole::Mean;
     bool fitted_along = false;  ///< beside every cause where the data can part them (the measuring chain's)
     std::vector<Kind> kinds{};  ///< that of its table first; a table names only the others

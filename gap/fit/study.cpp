@@ -8,10 +8,12 @@
 #include "gap/stats/shuffle.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -112,7 +114,8 @@ void Study::take_candidates(const Study& whole) {
             for (std::size_t k = 0; k < theirs.starts.size(); ++k)
                 own.starts[k].push_back(theirs.starts[k][j]);
         }
-        if (own.remark.empty() && (own.freed.empty() || !matters(own))) own.remark = "not in this part";
+        if (own.remark.empty() && (own.freed.empty() || moved_by(own).empty()))
+            own.remark = "not in this part";
         candidates_.push_back(std::move(own));
     }
 }
@@ -145,19 +148,30 @@ Fit Study::from_part(const Fit& guess, const State& from, const Effort& effort) 
 }
 
 std::string Study::missing_for(const Effect& effect) const {
-    for (const std::string_view need : effect.needs) {
-        bool any = false;
+    std::vector<std::string> missing;
+    for (std::string_view need : effect.needs) {
+        const bool may_stand = need.starts_with('+');
+        if (may_stand) need.remove_prefix(1);
+        bool varies_one = false;
+        std::string there;  // and does not vary
         std::stringstream names{std::string(need)};
-        std::string name;
-        while (std::getline(names, name, '|'))
-            any = any || varies(experiment_, name);
-        if (!any) return fmt::format("needs {} to be recorded and to vary", need);
+        for (std::string name; std::getline(names, name, '|');) {
+            varies_one = varies_one || varies(experiment_, name);
+            if (there.empty() && experiment_.has(name)) there = name;
+        }
+        if (varies_one || (may_stand && !there.empty())) continue;
+        if (may_stand)
+            missing.push_back(fmt::format("{} to be recorded", need));
+        else if (there.empty())
+            missing.push_back(fmt::format("{} to be recorded and to vary", need));
+        else
+            missing.push_back(
+                fmt::format("{} to vary, which is {:g} in every row", there, experiment_.range(there).low));
     }
-    return "";
+    return missing.empty() ? "" : fmt::format("needs {}", fmt::join(missing, "; and "));
 }
 
-/// Does any prediction change with the candidate's parameters, near neutral or where a fit begins?
-bool Study::matters(const Candidate& candidate) const {
+std::vector<std::size_t> Study::moved_by(const Candidate& candidate) const {
     const Prediction neutral = model_->predicted(model_->neutral());
     auto places = candidate.starts;
     for (const double sign : {1.0, -1.0}) {
@@ -166,12 +180,16 @@ bool Study::matters(const Candidate& candidate) const {
             place.push_back(std::clamp(one.centre + sign * one.prior_sd, one.low, one.high));
         places.push_back(std::move(place));
     }
-    return std::ranges::any_of(places, [&](const std::vector<double>& place) {
+    std::set<std::size_t> moved;
+    for (const std::vector<double>& place : places) {
         std::vector<double> values = model_->neutral();
         for (std::size_t j = 0; j < place.size(); ++j)
             values[candidate.freed[j].index] = place[j];
-        return model_->predicted(values) != neutral;
-    });
+        const Prediction there = model_->predicted(values);
+        for (std::size_t o = 0; o < there.size(); ++o)
+            if (there[o] != neutral[o]) moved.insert(o);
+    }
+    return {moved.begin(), moved.end()};
 }
 
 void Study::make_candidates() {
@@ -201,7 +219,7 @@ void Study::make_candidates() {
                                                : own[j][std::min(round, own[j].size() - 1)]);
             candidate.starts.push_back(std::move(start));
         }
-        if (candidate.remark.empty() && !matters(candidate))
+        if (candidate.remark.empty() && moved_by(candidate).empty())
             candidate.remark = "nothing in this data depends on it";
         candidates_.push_back(std::move(candidate));
     }

@@ -49,6 +49,9 @@ class Study {
     const Model& model() const { return *model_; }
     MotionView view() const { return view_; }
     const std::vector<Candidate>& candidates() const { return candidates_; }
+    /// The observables whose predictions change with a candidate's parameters, near neutral or where a fit
+    /// begins.
+    std::vector<std::size_t> moved_by(const Candidate& candidate) const;
     std::size_t rows() const;  ///< of all observables
     std::size_t folds() const { return folds_; }
     const Blocks& blocks() const { return blocks_; }
@@ -106,7 +109,6 @@ class Study {
     bool lighten_tails(State& state) const;
     double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
-    bool matters(const Candidate& candidate) const;
     void add_gains(const HeldOut& before, const HeldOut& after, std::size_t observable,
                    std::vector<double>& by_block) const;
     std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;

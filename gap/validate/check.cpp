@@ -164,7 +164,9 @@ void check_constant(Experiment& experiment, const ColumnInfo& info) {
     if (info.role == Role::Observable && std::string_view(info.unit) != "1")
         refuse(experiment, fmt::format("{} is {:g} in every row of every run", info.name, low),
                "a measurement that changes");
-    if (info.role != Role::Covariate)
+    if (info.role == Role::Observable)
+        experiment.caution("{} is {:g} in every row: nothing made it otherwise", info.name, low);
+    else if (info.role != Role::Covariate)
         experiment.caution("{} is {:g}{} in every row: nothing can be learnt about what depends on it",
                            info.name, low, unit_suffix(info.unit));
 }

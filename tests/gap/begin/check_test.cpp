@@ -55,6 +55,45 @@ TEST_CASE("a cause that needs a column that is not there is listed with the colu
     CHECK(battery->second == std::vector<std::string>{"battery_droop"});
 }
 
+TEST_CASE("what is said of whole frames agrees with what can be found about broken ones") {
+    const auto named = [](const std::map<std::string, std::vector<std::string>>& by_reason,
+                          const char* reason, const char* cause) {
+        const auto place = by_reason.find(reason);
+        return place != by_reason.end() &&
+               std::find(place->second.begin(), place->second.end(), cause) != place->second.end();
+    };
+    const auto found = [](const Readiness& ready, const char* cause) {
+        return std::find(ready.looked_for.begin(), ready.looked_for.end(), cause) != ready.looked_for.end();
+    };
+    Made made = clean("timing");
+    const Readiness without = readiness_of(Folder(made).path(), 1);
+    INFO(readiness_text(without));
+    CHECK(named(without.blind, "needs frame_ok to be recorded", "truncation"));
+    CHECK(named(without.blind, "needs edges to be recorded and to vary; and frame_ok to be recorded",
+                "baud_mismatch"));
+    CHECK(named(without.blind, "needs frame_ok to be recorded and to vary", "late_answers"));
+    CHECK_FALSE(found(without, "truncation"));
+
+    made.names.insert(made.names.begin(), "frame_ok");
+    for (auto& cells : made.rows)
+        cells.insert(cells.begin(), "1");
+    const Readiness whole = readiness_of(Folder(made).path(), 1);
+    INFO(readiness_text(whole));
+    CHECK(any_holds(whole.experiment->cautions, {"frame_ok is 1 in every row: nothing made it otherwise"}));
+    CHECK(named(whole.absent, "frame_ok is 1 in every row", "truncation"));
+    CHECK(named(whole.blind, "needs frame_ok to vary, which is 1 in every row", "late_answers"));
+    CHECK_FALSE(found(whole, "truncation"));
+    CHECK_THAT(readiness_text(whole), Contains("did not happen: truncation (frame_ok is 1 in every row)"));
+
+    for (std::size_t i = 5; i < made.rows.size(); i += 20)
+        made.rows[i].front() = "0";
+    const Readiness broken = readiness_of(Folder(made).path(), 1);
+    INFO(readiness_text(broken));
+    CHECK(found(broken, "truncation"));
+    CHECK(found(broken, "late_answers"));
+    CHECK_FALSE(any_holds(broken.experiment->cautions, {"frame_ok"}));
+}
+
 TEST_CASE("all problems of all files are listed, not only the first") {
     Made made = clean("proximity");
     const Folder folder(made);
