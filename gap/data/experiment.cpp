@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -169,6 +170,33 @@ void read_constants(Reader& reader, Kind kind, const TomlValue& table, Frame& fr
     }
 }
 
+bool same_letters(std::string_view a, std::string_view b) {
+    return std::ranges::equal(a, b, {}, ::tolower, ::tolower);
+}
+
+/// All columns that are not there, in one line; with them what has other capitals, which a caution would name
+/// later.
+void require_columns(Kind kind, const Run& run, const std::vector<std::string>& in_file,
+                     const std::filesystem::path& path, const Frame& frame) {
+    const std::vector<std::string_view> names(in_file.begin(), in_file.end());
+    std::string missing, capitals;
+    for (const ColumnInfo& info : columns_of(kind)) {
+        if (run.has(info.name)) continue;
+        if (info.required)
+            missing += fmt::format("{} \"{}\" ({}{})", missing.empty() ? "has no column" : ", none",
+                                   info.name, info.meaning, did_you_mean(info.name, names));
+        else
+            for (const std::string_view name : names)
+                if (name != info.name && same_letters(name, info.name))
+                    capitals += fmt::format("; {} for \"{}\"", info.name, name);
+    }
+    if (!missing.empty())
+        throw InputError(path.string(), "header", missing,
+                         fmt::format("{}, or where to find it in [columns] of {}{}",
+                                     missing.find(", none") == std::string::npos ? "it" : "each", frame.file,
+                                     capitals));
+}
+
 Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, Frame& frame,
              Problems* problems) {
     Reader reader(frame.file, fmt::format("run {}", index + 1), table);
@@ -206,13 +234,7 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
             throw InputError(path.string(), "header", fmt::format("has no column \"{}\"", origin.from),
                              fmt::format("it, as {} says", frame.file));
     read_constants(reader, experiment.kind, table, frame, run);
-    const std::vector<std::string_view> names(csv.names.begin(), csv.names.end());
-    for (const ColumnInfo& info : columns_of(experiment.kind))
-        if (info.required && !run.has(info.name))
-            throw InputError(path.string(), "header",
-                             fmt::format("has no column \"{}\" ({}){}", info.name, info.meaning,
-                                         did_you_mean(info.name, names)),
-                             fmt::format("it, or where to find it in [columns] of {}", frame.file));
+    require_columns(experiment.kind, run, csv.names, path, frame);
     std::vector<std::string_view> absent;
     for (const ColumnInfo& info : columns_of(experiment.kind))
         if (!run.has(info.name)) absent.emplace_back(info.name);

@@ -87,6 +87,18 @@ TEST_CASE("files that cannot be used are refused with a line") {
     CHECK_THAT(refusal(folder.path() / "experiment.toml"), Contains("not a folder"));
 }
 
+TEST_CASE("all headers with other capitals are named at once") {
+    const std::string line =
+        of_csv(replaced(replaced(replaced(table(), "t_s", "T_s"), "grey", "Grey"), "reading", "READING"));
+    CHECK_THAT(
+        line,
+        Contains(
+            "has no column \"reading\" (reflected counts; did you mean \"READING\"?), none \"grey\" (") &&
+            Contains("did you mean \"Grey\"?") && Contains("t_s for \"T_s\""));
+    CHECK_THAT(of_csv(replaced(table(), "grey", "Grey")),
+               Contains("no column \"grey\"") && !Contains("none"));
+}
+
 TEST_CASE("an experiment.toml that is none gives one line with what to do") {
     const Folder folder;
     const auto file = folder.path() / "experiment.toml";
