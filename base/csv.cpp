@@ -13,6 +13,16 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\n\"";
 
+/// Where the cell at the front of `line` ends: behind its closing quote where it begins with one (RFC 4180;
+/// two quotes are one of the text), at the next separator else.
+std::size_t cell_end(std::string_view line, char separator) {
+    std::size_t at = line.find_first_not_of(' ');
+    if (at == std::string_view::npos || line[at] != '"') return line.find(separator);
+    for (++at; (at = line.find('"', at)) != std::string_view::npos; at += 2)
+        if (at + 1 >= line.size() || line[at + 1] != '"') return line.find(separator, at);
+    return std::string_view::npos;
+}
+
 }  // namespace
 
 std::string_view csv_trimmed(std::string_view text) {
@@ -32,7 +42,7 @@ std::vector<std::string_view> csv_cells(std::string_view line, char separator) {
         return cells;
     }
     for (;;) {
-        const auto end = line.find(separator);
+        const auto end = cell_end(line, separator);
         cells.push_back(csv_trimmed(line.substr(0, end)));
         if (end == std::string_view::npos) return cells;
         line.remove_prefix(end + 1);

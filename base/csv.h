@@ -12,7 +12,9 @@ namespace puckloop {
 /// Without white space, carriage returns and double quotes at both ends.
 std::string_view csv_trimmed(std::string_view text);
 
-/// Cells of one line, each trimmed. With ' ' any run of white space separates and there are no empty cells.
+/// Cells of one line, each trimmed. A separator inside quotes belongs to its cell (RFC 4180; a quoted cell
+/// ends with its line at the latest, and two quotes inside stay two). With ' ' any run of white space
+/// separates and there are no empty cells.
 std::vector<std::string_view> csv_cells(std::string_view line, char separator);
 
 /// A decimal number, with a leading '+' allowed; false for anything else, an empty cell too.

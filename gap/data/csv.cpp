@@ -62,12 +62,12 @@ struct Commas {
 /// How a file writes its fractions: with one or the other throughout.
 enum class Decimal { Unknown, Point, Comma };
 
-/// False for text that is no number. A comma inside a cell can only be a decimal comma where something else
-/// separates cells.
-bool parse(std::string_view cell, bool comma_separates, Decimal& decimal, double& value) {
+/// False for text that is no number. A comma inside a cell, between other separators or in quotes, is a
+/// decimal comma.
+bool parse(std::string_view cell, Decimal& decimal, double& value) {
     value = std::numeric_limits<double>::quiet_NaN();
     if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NA" || cell == "null") return true;
-    const auto comma = comma_separates ? std::string_view::npos : cell.find(',');
+    const auto comma = cell.find(',');
     const Decimal own = comma != std::string_view::npos            ? Decimal::Comma
                         : cell.find('.') != std::string_view::npos ? Decimal::Point
                                                                    : Decimal::Unknown;
@@ -96,15 +96,29 @@ void refuse_binary(const std::filesystem::path& file, const std::string& place, 
 
 char separator_of(std::string_view header) {
     for (const char separator : {',', ';', '\t'})
-        if (header.find(separator) != std::string_view::npos) return separator;
+        if (csv_cells(header, separator).size() > 1) return separator;
     return ',';
+}
+
+/// Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of the file says which.
+void refuse_thousands(const std::filesystem::path& file, const CsvTable& table,
+                      const std::vector<Commas>& commas) {
+    const auto clear = [](const Commas& one) { return one.any && !one.thousands; };
+    if (std::any_of(commas.begin(), commas.end(), clear)) return;
+    for (std::size_t i = 0; i < commas.size(); ++i)
+        if (commas[i].any)
+            throw InputError(file.string(), "",
+                             fmt::format("column \"{}\" has three digits behind every comma: thousands or "
+                                         "decimals (\"1,200\" is 1200 or 1.2)?",
+                                         table.names[i]),
+                             "nothing between thousands, and a decimal point");
 }
 
 void read_header(const std::filesystem::path& file, std::string_view line, char separator, CsvTable& table) {
     for (const auto cell : csv_cells(line, separator)) {
         double ignored = 0.0;
         Decimal decimal = Decimal::Unknown;
-        if (!cell.empty() && parse(cell, separator == ',', decimal, ignored))
+        if (!cell.empty() && parse(cell, decimal, ignored))
             throw InputError(file.string(), kHeader,
                              fmt::format("has the number {} as a column's name", readable(cell)),
                              "a header line with names");
@@ -115,6 +129,12 @@ void read_header(const std::filesystem::path& file, std::string_view line, char 
         table.names.push_back(own);
     }
     table.columns.resize(table.names.size());
+}
+
+/// A cell that goes on in the next line, or a quote too many.
+const char* open_quote(std::string_view line) {
+    return std::count(line.begin(), line.end(), '"') % 2 == 0 ? ""
+                                                              : ", and a quote that its line does not close";
 }
 
 /// What to do about a cell that is no number.
@@ -173,7 +193,8 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         auto cells = csv_cells(line, separator);
         const bool whole = attempt(problems, [&] {
             if (cells.size() != table.names.size())
-                throw InputError(file.string(), place, fmt::format("has {} cells", cells.size()),
+                throw InputError(file.string(), place,
+                                 fmt::format("has {} cells{}", cells.size(), open_quote(line)),
                                  fmt::format("{}, as the header{}", table.names.size(),
                                              separator == ',' && cells.size() > table.names.size()
                                                  ? "; with decimal commas, semicolons between cells"
@@ -182,9 +203,9 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (!whole) cells.assign(table.names.size(), {});  // the rows behind it keep their numbers
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
-            if (separator != ',') commas[i].take(cells[i]);
+            commas[i].take(cells[i]);
             const bool sound = attempt(problems, [&] {
-                if (!parse(cells[i], separator == ',', decimal, value))
+                if (!parse(cells[i], decimal, value))
                     throw InputError(file.string(), place,
                                      fmt::format("\"{}\" in column \"{}\" is not a finite number",
                                                  readable(cells[i]), table.names[i]),
@@ -199,6 +220,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
     if (table.rows() == 0)
         throw InputError(file.string(), "", "has no rows", "at least one below the header");
     table.decimal_commas = decimal == Decimal::Comma;
+    if (table.decimal_commas && separator == ',') refuse_thousands(file, table, commas);
     for (std::size_t i = 0; table.decimal_commas && i < commas.size(); ++i)
         if (commas[i].any && commas[i].thousands) table.like_thousands.push_back(table.names[i]);
     return table;

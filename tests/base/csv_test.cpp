@@ -12,6 +12,8 @@ using namespace puckloop;
 
 TEST_CASE("cells are trimmed, empty ones kept but between blanks") {
     CHECK(csv_cells("a, \"b\" ,,c\r", ',') == std::vector<std::string_view>{"a", "b", "", "c"});
+    CHECK(csv_cells(R"("0,123",5," a;b ";"c")", ',') ==
+          std::vector<std::string_view>{"0,123", "5", "a;b \";\"c"});
     CHECK(csv_cells("", ',') == std::vector<std::string_view>{""});
     CHECK(csv_cells("  1 \t 2\t", ' ') == std::vector<std::string_view>{"1", "2"});
     CHECK(csv_cells("   ", ' ').empty());

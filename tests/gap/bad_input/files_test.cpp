@@ -136,6 +136,31 @@ TEST_CASE("decimal commas between semicolons or tabs are read, where all numbers
     CHECK_THAT(of_csv(german + "6,0;1;0,5;1.300,0\n"), Contains("row 61") && Contains("thousands"));
 }
 
+TEST_CASE("decimal commas in quotes between commas are read, thousands are refused") {
+    const auto quoted = [](const char* grey, const char* reading) {
+        std::string text = "\"t_s\",\"sensor\",\"grey\",\"reading\"\n";
+        for (int i = 0; i < 60; ++i)
+            text += fmt::format("{},\"{}\",{},{}\n", i, i % 3, replaced(grey, "#", std::to_string(i % 5)),
+                                replaced(replaced(reading, "#", std::to_string(i % 5)), "@",
+                                         std::to_string(i * 37 % 11 + 100)));
+        return text;
+    };
+    std::string cautions;
+    CHECK(of_csv(quoted("\"0,#5\"", "#@"), &cautions) == "");
+    CHECK_THAT(cautions, Contains("0,5 is 0.5") && Contains("1 of 1 files"));
+    const Folder folder;
+    write_file(folder.path() / "experiment.toml", kToml);
+    write_file(folder.path() / "a.csv", quoted("\"0,#5\"", "#@"));
+    CHECK(read_experiment(folder.path()).runs.front().column("grey")[3] == 0.35);
+    // Whole numbers beside "1,104" say nothing about which it is.
+    CHECK_THAT(of_csv(quoted("0", "\"1,@\"")), Contains("column \"reading\"") && Contains("1200 or 1.2"));
+    // A point elsewhere, or a second comma, says that commas part thousands.
+    CHECK_THAT(of_csv(quoted("0.#", "\"1,@\"")), Contains("\"reading\"") && Contains("between thousands"));
+    CHECK_THAT(of_csv(quoted("0", "\"1,#00,@\"")), Contains("between thousands"));
+    CHECK_THAT(of_csv(table() + "6.0,1,\"0.5,300\n"),
+               Contains("row 61") && Contains("a quote that its line does not close"));
+}
+
 TEST_CASE("commas that may part thousands are read as decimal commas, with a caution") {
     // Three digits behind every comma, none of four without it: "331" is then 331 counts, "1,106" 1.106.
     const auto readings = [](const char* (*cell)(int)) {
