@@ -2,6 +2,7 @@
 // takes, [measurement] what belongs to the measuring chain or has no counterpart in a run; `run` says that it
 // passes over it.
 
+#include "gap/data/columns.h"
 #include "gap/overlay/overlay_parts.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/parameters.h"
@@ -41,8 +42,10 @@ std::string parameter_line(const std::string& name, double value) {
     const double taken = std::clamp(value, info->min, info->max);
     std::string text;
     if (taken != value)
-        text = comment(fmt::format("{} = {:.6g} {} was found or told; the simulator takes {:g} to {:g}", name,
-                                   value, info->unit, info->min, info->max));
+        text = comment(fmt::format("{} = {:.6g}{}{} was found or stated; the simulator takes {:g} to {:g}",
+                                   name, value, unit_suffix(info->unit),
+                                   made_by_firmware(name) ? ", less what firmware and host make," : "",
+                                   info->min, info->max));
     return text + fmt::format("\"{}\" = {}\n", name, scenarios::parameter_text(name, taken));
 }
 

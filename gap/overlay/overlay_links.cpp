@@ -81,8 +81,11 @@ class LinksOverlay {
         constexpr double kLongest = 1.0;  // what a run takes
         const double value = more(name, own);
         const bool command = key == std::string_view("command_delay");
-        if (value > 0 || (value < 0 && either_sign(name)))
-            line(key, fmt::format("\"{:.9g} s\"", command ? value : std::clamp(value, -kLongest, kLongest)));
+        if (!(value > 0 || (value < 0 && either_sign(name)))) return;
+        const double taken = command ? value : std::clamp(value, -kLongest, kLongest);
+        if (taken != value)
+            header_ += fmt::format("# {} = {:.6g} s was found; a run takes -1 to 1 s\n", name, value);
+        line(key, fmt::format("\"{:.9g} s\"", taken));
     }
     bool share(const char* name, const char* key) {
         const double value = more(name);

@@ -54,11 +54,7 @@ class RabOverlay {
 
   private:
     std::optional<double> take(const std::string& name) { return gap::take(fitted_, name); }
-    void set(const std::string& name, double value) {
-        int index = -1;
-        const auto* info = physics::find_parameter(name, index);
-        simulator_[name] = std::clamp(value, info->min, info->max);
-    }
+    void set(const std::string& name, double value) { simulator_[name] = value; }
 
     /// Gains of parts; the boards number them from 1.
     void gains() {

@@ -30,7 +30,7 @@ void ages(const Experiment& experiment, Values& fitted, Values& simulator) {
     for (const Own& own : kOwn) {
         if (!experiment.nominal.contains(own.parameter) && !fitted.contains(own.parameter)) continue;
         const double made = experiment.nominal_or(own.parameter, own.seconds);
-        simulator[own.parameter] = std::max(take(fitted, own.parameter).value_or(made) - made, 0.0);
+        simulator[own.parameter] = take(fitted, own.parameter).value_or(made) - made;
     }
 }
 

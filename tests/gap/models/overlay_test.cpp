@@ -147,6 +147,13 @@ TEST_CASE("an overlay's age is what firmware and host do not make by themselves"
     experiment.kind = Kind::Proximity;
     CHECK(loaded(experiment, {{"proximity.age", 0.05}}).proximity.age == Approx(0.05 - 0.5 / 63.015));
     CHECK(loaded(experiment, {{"proximity.age", 0.004}}).proximity.age == 0);
+    // What is cut has a comment that gives what was found.
+    CHECK_THAT(overlay_toml(experiment, said({{"proximity.age", 0.004}})),
+               Catch::Matchers::Contains(
+                   "# proximity.age = -0.00393462 s, less what firmware and host make, was found "
+                   "or stated; the simulator takes 0 to 0.5\n\"proximity.age\" = "));
+    CHECK_THAT(overlay_toml(experiment, said({{"proximity.age", 0.05}})),
+               !Catch::Matchers::Contains("less what"));
     CHECK(loaded(experiment, {}).proximity.age == 0);
     experiment.nominal = {{"proximity.age", 0.012}};
     CHECK(loaded(experiment, {{"proximity.age", 0.05}}).proximity.age == Approx(0.038));

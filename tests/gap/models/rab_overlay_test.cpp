@@ -136,6 +136,19 @@ TEST_CASE("an overlay's spread and loss act on every frame") {
     CHECK(reported(0.15, {{"rab.random_loss", 0.3}}).heard == Approx(0.7).margin(0.07));
 }
 
+TEST_CASE("what the medium cannot have is cut with a comment") {
+    Experiment experiment;
+    experiment.kind = Kind::Rab;
+    Verdict verdict;
+    verdict.causes.emplace_back();
+    FittedParameter gain;
+    gain.name = "rab.receiver_gain3", gain.value = 1e4;
+    verdict.causes.front().parameters = {gain};
+    const std::string text = overlay_toml(experiment, verdict);
+    CHECK_THAT(text, Catch::Matchers::Contains(
+                         "# ir.receiver_gain2 = 10000 was found or stated; the simulator takes"));
+}
+
 TEST_CASE("what the medium has nothing for stays with the measurement") {
     Verdict verdict;
     verdict.causes.emplace_back();
