@@ -178,7 +178,8 @@ std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si) {
 }
 
 std::string unit_suffix(std::string_view unit) {
-    return unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit);
+    if (unit.empty() || unit == "1") return "";
+    return unit.starts_with("1/") ? fmt::format(" per {}", unit.substr(2)) : fmt::format(" {}", unit);
 }
 
 std::vector<std::string_view> unit_names(std::string_view si) {

@@ -32,7 +32,7 @@ std::span<const ColumnInfo> columns_of(Kind kind);
 /// nullptr if the kind has no such column.
 const ColumnInfo* find_column(Kind kind, std::string_view name);
 
-/// " counts"; "" for pure numbers.
+/// " counts", " per kg"; "" for pure numbers.
 std::string unit_suffix(std::string_view unit);
 
 /// value_si = value * factor + offset

@@ -48,10 +48,10 @@ std::vector<Mode> modes_of(const Observable& o, const Predicted& p) {
     std::vector<Mode> modes;
     if (o.noise != NoiseKind::Level) modes.push_back({"offset", o.unit, std::vector<double>(n, 1.0)});
     if (o.noise == NoiseKind::Event) {
-        modes.front().unit = "logits";
+        modes.front().unit = "logits";  // said as shares of rows: how_runs_differ()
         return modes;
     }
-    Mode share{"share of what is predicted", "1", p.mean};
+    Mode share{"share of what is predicted", kShare, p.mean};
     if (o.noise == NoiseKind::Level) {
         Mode drift{"drift", o.unit + "/s", std::vector<double>(n, 0.0)};
         std::size_t first = 0;
@@ -162,6 +162,19 @@ double best_tau(const std::vector<Score>& runs, double spread, std::size_t left_
     return best;
 }
 
+/// Of an event: in which share of their rows it happens, in the run where it is rarest and in the other.
+std::string shares_of(const Observable& o) {
+    std::map<std::uint32_t, std::pair<double, double>> by_run;  // happened, of rows
+    for (std::size_t i = 0; i < o.y.size(); ++i)
+        by_run[o.run[i]].first += o.y[i], by_run[o.run[i]].second += 1;
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& [run, count] : by_run) {
+        low = std::min(low, count.first / count.second);
+        high = std::max(high, count.first / count.second);
+    }
+    return fmt::format("happens in {} to {} of a run's rows", quantity(low, kShare), quantity(high, kShare));
+}
+
 /// `step`: what is smaller, in the observable's unit, is no difference.
 RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& scores, double step) {
     const auto& runs = scores.run;
@@ -196,8 +209,10 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     }
     if (scores.freedom > 0) result.p_value = stats::fisher_tail(between / freedom, freedom, scores.freedom);
     result.shape =
-        fmt::format("differs from run to run: {} {} to {} (sd {})", mode.what, quantity(low, mode.unit),
-                    quantity(high, mode.unit), quantity(result.size, mode.unit));
+        o.noise == NoiseKind::Event
+            ? fmt::format("differs from run to run: {}", shares_of(o))
+            : fmt::format("differs from run to run: {} {} to {} (sd {})", mode.what, change(low, mode.unit),
+                          change(high, mode.unit), quantity(result.size, mode.unit));
     return result;
 }
 

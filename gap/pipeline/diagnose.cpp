@@ -8,6 +8,7 @@
 #include "gap/predictive/discrepancies.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/validate/placements.h"
+#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 
@@ -53,9 +54,13 @@ std::string farthest_place(const PredictiveCurve& curve, const std::string& unit
     const std::size_t place = farthest_of(curve).first;
     const std::string where =
         curve.categories.empty() ? fmt::format("{:.3g}", curve.x[place]) : curve.categories[place];
-    return fmt::format("{:.3g}{} at {} {}, where the fit makes {:.3g} to {:.3g}", curve.measured[place],
-                       unit == "1" ? "" : " " + unit, curve.x_label, where, curve.low[place],
-                       curve.high[place]);
+    const double largest =
+        std::max({std::abs(curve.measured[place]), std::abs(curve.low[place]), std::abs(curve.high[place])});
+    const auto shown = [&](double value) {
+        return quantity(value, unit == "1" ? kShare : unit, -1, largest);
+    };
+    return fmt::format("{} at {} {}, where the fit makes {} to {}", shown(curve.measured[place]),
+                       curve.x_label, where, shown(curve.low[place]), shown(curve.high[place]));
 }
 
 /// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni.

@@ -70,7 +70,7 @@ std::string gain_section(const Verdict& verdict) {
                range_cell(held.low, held.high)},
               "strong");
     for (const HeldObservable& o : verdict.observables)
-        table.row({plain_observable(o.name), o.unit, cell(o.before), cell(o.after), cell(o.ratio),
+        table.row({plain_observable(o.name), unit_cell(o.unit), cell(o.before), cell(o.after), cell(o.ratio),
                    range_cell(o.low, o.high)});
     out += table.html();
     out += paragraph(
@@ -96,7 +96,7 @@ std::string rerun_section(const Verdict& verdict) {
     if (!rerun.not_done.empty()) return out + paragraph("Not run again: " + rerun.not_done + ".");
     Table table({"observable", "unit", "#error before", "#error after", "#ratio"});
     for (const RerunObservable& o : rerun.observables)
-        table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.after / o.before)});
+        table.row({o.name, unit_cell(o.unit), cell(o.before), cell(o.after), cell(o.after / o.before)});
     out += table.html();
     out += paragraph(fmt::format("The whole robot emulated, firmware in the loop: {} of {} runs or "
                                  "placements a side, {} rows of the measurement compared; first as the "
@@ -113,7 +113,7 @@ std::string parameters_section(const Verdict& verdict) {
     Table table({"cause", "parameter", "unit", "#simulator", "#fitted", "90 % interval", "goes into"});
     const auto add = [&](const std::string& cause, const FittedParameter& p) {
         const int digits = digits_to_tell(p.low, p.value, p.high);
-        table.row({cause, p.name, p.unit, cell(p.neutral), cell(p.value, digits),
+        table.row({cause, p.name, unit_cell(p.unit), cell(p.neutral), cell(p.value, digits),
                    range_cell(p.low, p.high, digits), p.in_simulator ? "simulator" : "measuring chain"});
     };
     for (const Cause& cause : verdict.causes)

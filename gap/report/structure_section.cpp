@@ -52,7 +52,7 @@ void add_floor(const Experiment& experiment, const Series& series, Table& table)
     double single = stats::row_to_row({left_over(series, Stage::Before), runs}, chains_of(covariates, rows));
     if (single < kRounding * before) single = 0.0;
     if (series.events) single = NAN;  // what happened or not has no size that a difference could give
-    table.row({plain_observable(series.observable), series.unit, cell(floor.within_run),
+    table.row({plain_observable(series.observable), unit_cell(series.unit), cell(floor.within_run),
                cell(floor.between_runs), cell(single), cell(before),
                cell(rms_of(left_over(series, Stage::After)))});
 }

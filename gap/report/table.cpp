@@ -53,4 +53,8 @@ std::string range_cell(double low, double high, int digits) {
     return fmt::format("{} … {}", cell(low, digits), cell(high, digits));
 }
 
+std::string unit_cell(const std::string& unit) {
+    return unit == "1" ? "" : unit;
+}
+
 }  // namespace puckloop::gap::report

@@ -31,4 +31,7 @@ std::string p_cell(double p);
 /// "low .. high".
 std::string range_cell(double low, double high, int digits = 4);
 
+/// The unit of a column of numbers; nothing for pure ones.
+std::string unit_cell(const std::string& unit);
+
 }  // namespace puckloop::gap::report

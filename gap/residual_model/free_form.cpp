@@ -8,6 +8,7 @@
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/shuffle.h"
+#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 
@@ -29,6 +30,7 @@ constexpr std::size_t kMostRows = 12000;    // beyond, stretches are left out
 /// Errors of one observable or more, rows in chains.
 struct Errors {
     std::string observable, unit;
+    std::string said_in;  ///< unit in which a person reads them
     stats::ErrorRows rows;
     Series at;  // run and row of each
     std::vector<char> starts;
@@ -41,6 +43,7 @@ Errors errors_of(const Observable& observable, const Predicted& predicted, const
     Errors e;
     e.observable = observable.name;
     e.unit = observable.unit;
+    e.said_in = observable.noise == NoiseKind::Event ? kShare : observable.unit;
     e.quantum = observable.instrument.quantum;
     const bool whitened = observable.noise != NoiseKind::Carry || predicted.line_amplitude > 0;
     e.rows.carry = whitened ? 0.0 : noise.carry;
@@ -122,7 +125,7 @@ void add_proportional(const Errors& errors, std::vector<stats::Component>& compo
     }
 }
 
-/// One number a cell, in the observable's unit, and its course in words.
+/// One number a cell, in the observable's unit, and its course in words, in `unit`.
 FreeFormTerm term_of(const stats::Component& component, const std::vector<double>& correction,
                      const std::vector<double>& scale, double share, const std::string& unit) {
     FreeFormTerm term;
@@ -147,7 +150,7 @@ FreeFormTerm term_of(const stats::Component& component, const std::vector<double
     const auto [low, high] = std::ranges::minmax_element(term.values);
     const auto at = [&](auto one) { return term.where[static_cast<std::size_t>(one - term.values.begin())]; };
     term.shape =
-        fmt::format("{:+.3g} {} at {}, {:+.3g} {} at {}", *high, unit, at(high), *low, unit, at(low));
+        fmt::format("{} at {}, {} at {}", change(*high, unit), at(high), change(*low, unit), at(low));
     if (component.ordered && profile.x.size() > 2)
         term.shape = stats::shape_words(profile, component.name) + " (" + term.shape + ")";
     return term;
@@ -213,7 +216,7 @@ FreeForm form_of(const Errors& errors, const std::vector<stats::Component>& comp
     for (std::size_t k = 0; k < std::min(kTerms, order.size()); ++k)
         if (fit.weight[order[k]] > kLeastTerm * all)
             form.terms.push_back(term_of(components[order[k]], fit.correction, errors.scale,
-                                         fit.weight[order[k]] / all, errors.unit));
+                                         fit.weight[order[k]] / all, errors.said_in));
     // What only a few runs can show is clear when several gain by it and none loses, or where the same errors
     // exchanged come nowhere near.
     const bool rounding = form.size * stats::median(errors.scale) < errors.quantum / std::sqrt(12.0);
@@ -277,6 +280,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     errors.quantum = 0.0;
     errors.observable = form.observable;
     errors.unit = "of the readings";
+    errors.said_in = kShare;
     errors.rows.carry = 0.0;
     errors.rows.trimmed = false;
     form = form_of(errors, components, seed, false);

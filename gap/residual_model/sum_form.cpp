@@ -7,6 +7,7 @@
 #include "gap/stats/parts.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/series.h"
+#include "gap/verdict/sentences.h"
 #include "gap/verdict/verdict.h"
 
 #include <fmt/format.h>
@@ -291,7 +292,7 @@ FreeFormTerm term_of(const Column& column, double move, const std::vector<stats:
     term.values = {move};
     const std::string where =
         (column.above ? "from " : "at ") + term.where.front() + (column.above ? " on" : "");
-    term.shape = amount.of.empty() ? fmt::format("{:+.3g} {} a row {}", move, unit, where)
+    term.shape = amount.of.empty() ? fmt::format("{} a row {}", change(move, unit), where)
                  : amount.unit == unit
                      ? fmt::format("{:+.3g} % of {} {}", 100 * move, plain_observable(amount.of), where)
                      : fmt::format("{:+.3g} {}/{} of {} {}", move, unit, amount.unit,

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMostListed = 10;  // values that fit as well, in words
 constexpr double kDegree = 57.29577951308232;
+constexpr std::string_view kLogarithm = "ln ";  // a unit of logarithms begins so
 
 std::string listed(const std::vector<std::string>& words, const char* last) {
     std::string text;
@@ -51,8 +52,15 @@ std::string quantity(double value, const std::string& unit, int more_digits, dou
     if (unit == "m" && size < 1) return fmt::format("{:.{}g} mm", value * 1e3, four);
     if (unit == "s" && size < 1) return fmt::format("{:.{}g} ms", value * 1e3, four);
     if (unit == "rad" && size < 7) return fmt::format("{:.{}g} deg", value * kDegree, three);
+    if (unit.starts_with(kLogarithm)) return fmt::format("a factor of {:.{}g}", std::exp(value), four);
+    if (unit == kShare) return fmt::format("{:.{}g} %", value * 100, three);
     if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.{}g} %", value * 100, three);
     return fmt::format("{:.{}g}{}", value, four, unit_suffix(unit));
+}
+
+std::string change(double value, const std::string& unit) {
+    const std::string size = quantity(value, unit, -1);
+    return value < 0 || unit.starts_with(kLogarithm) ? size : "+" + size;
 }
 
 std::string cause_sentence(const Cause& cause) {

@@ -170,3 +170,29 @@ TEST_CASE("a range over decades ends where its logarithm does") {
     CHECK(range_end(0.4999, 0.0, 0.5, 0.0) == 0.5);
     CHECK(std::isnan(range_end(0.9999, 0.0, 1.0, 0.0)));  // all of a share
 }
+
+TEST_CASE("runs that lose differently are described by the shares of their rows") {
+    constexpr int kPairs = 8, kMessages = 200;
+    RandomStream random(Catch::rngSeed(), "differences test/losses");
+    Experiment experiment;
+    experiment.kind = Kind::Rab;
+    for (int r = 0; r < kPairs; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = kMessages;
+        for (int k = 0; k < kMessages; ++k) {
+            run.columns["t_s"].push_back(0.1 * k);
+            run.columns["distance_m"].push_back(0.3);
+            const bool lost = r == 3 ? k % 2 == 0 : random.uniform() < 0.02;
+            run.columns["received"].push_back(lost ? 0 : 1);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    const Study study(experiment, 1);
+    const auto all = run_differences(study.model(), study.fit_none().fitted.state);
+    REQUIRE_FALSE(all.empty());
+    const RunDifference& seen = all.front();
+    CHECK(seen.observable == "received");
+    CHECK_THAT(seen.shape, Catch::Contains("differs from run to run: happens in 50 % to 9") &&
+                               Catch::Contains("% of a run's rows") && !Catch::Contains("logit"));
+}

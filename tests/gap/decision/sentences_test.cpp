@@ -26,6 +26,18 @@ TEST_CASE("a narrow interval is given with digits enough to see its ends") {
     CHECK(quantity(0.0123456, "m", 1) == "12.346 mm");
 }
 
+TEST_CASE("shares are in per cent, logarithms factors, and pure numbers have no unit") {
+    CHECK(quantity(0.031, kShare) == "3.1 %");
+    CHECK(quantity(0.62, kShare) == "62 %");
+    CHECK(quantity(1.05, "1") == "1.05");
+    CHECK(quantity(0.05, "ln counts") == "a factor of 1.051");
+    CHECK(quantity(0.4962, "1/kg") == "0.4962 per kg");
+    CHECK(change(0.0123, "m") == "+12.3 mm");
+    CHECK(change(-0.0123, "m") == "-12.3 mm");
+    CHECK(change(0.000321, kShare) == "+0.032 %");
+    CHECK(change(-0.05, "ln counts") == "a factor of 0.951");
+}
+
 TEST_CASE("a cause of scatter claims what it gains, not an error that stays") {
     Held held{1, 1, 1.0, 0.99, 1.01, -1.2, -0.9, 0.25, 0.35, 10, 9, true, ""};
     CHECK(gain_sentence(held) ==
