@@ -332,6 +332,10 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
     experiment.description = top.text("description", "");
     experiment.source = top.text("source", "");
     experiment.licence = top.text("licence", "");
+    if (top.flag("brief", false))
+        experiment.caution(
+            "this is a brief recording, to see what is recorded: too few and too short runs for a "
+            "verdict, whichever it is");
     read_assumed(top, experiment);
     if (const TomlValue* table = top.table("columns")) read_columns(*table, experiment, frame);
     if (const TomlValue* table = top.table("nominal"))

@@ -92,6 +92,7 @@ std::string experiment_toml(const WrittenExperiment& e) {
                                                                 {"licence", e.licence}};
     for (const auto& [key, value] : texts)
         if (!value.empty()) text += fmt::format("{} = {}\n", key, quoted(value));
+    if (e.brief) text += "brief = true\n";
     if (!e.assumed.empty())
         text += fmt::format("assumed = [{}]\n", fmt::join(e.assumed | std::views::transform(quoted), ", "));
     if (!e.nominal.empty()) text += "\n[nominal]\n";

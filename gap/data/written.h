@@ -41,6 +41,7 @@ struct WrittenInstrument {
 struct WrittenExperiment {
     std::string folder;  ///< an importer's: its name under the output
     std::string kind, title = "bench test", robot = "e-puck", description, source, licence;
+    bool brief = false;                     ///< a short look, too little for a verdict
     std::vector<std::string> assumed;       ///< truth columns that nobody measured
     std::map<std::string, double> nominal;  ///< model parameters of that robot
     std::vector<WrittenInstrument> instruments;

@@ -101,6 +101,13 @@ TEST_CASE("gap record: a change that the kind does not show is warned of") {
     const auto seen = run_puckloop("gap record ground --brief --set ground.gain1=0.9 --out " + desk.at("b"));
     CHECK(seen.status == 0);
     CHECK_THAT(seen.output, !Contains("warning"));
+    // What is too short for a verdict is called that in the verdict.
+    const auto verdict = run_puckloop("gap " + desk.at("b") + " --no-rerun --out " + desk.at("verdict"));
+    CHECK(verdict.status == 0);
+    CHECK_THAT(verdict.output, Contains("caution: this is a brief recording") && Contains("verdict: "));
+    std::ifstream json(desk.path / "verdict" / "gap.json");
+    const std::string text{std::istreambuf_iterator<char>(json), {}};
+    CHECK_THAT(text, Contains("this is a brief recording"));
 }
 
 TEST_CASE("gap: -v says each step in the host's log, a bad level is refused") {

@@ -164,7 +164,9 @@ WrittenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
 
 }  // namespace
 
-WrittenExperiment record(std::string_view kind, const RecordOptions& options) {
+namespace {
+
+WrittenExperiment performed(std::string_view kind, const RecordOptions& options) {
     if (kind == "rab") return record_rab(options);
     if (kind == "serial") return record_serial(options);
     const std::vector<Act> acts = acts_of(kind, options.seed, options.brief);
@@ -206,6 +208,14 @@ WrittenExperiment record(std::string_view kind, const RecordOptions& options) {
         experiment.runs.push_back(std::move(run));
         if (options.done) options.done(k + 1, acts.size());
     }
+    return experiment;
+}
+
+}  // namespace
+
+WrittenExperiment record(std::string_view kind, const RecordOptions& options) {
+    WrittenExperiment experiment = performed(kind, options);
+    experiment.brief = options.brief;
     return experiment;
 }
 
