@@ -75,7 +75,10 @@ std::vector<Effect> motion_effects() {
          {{"robot.drift_x", -0.05, 0.05, 0.003, "?"},
           {"robot.drift_y", -0.05, 0.05, 0.003, "?"}},
          "robot.drift_x, robot.drift_y (physics/floor_motion)",
-         "the same run with other headings at the start"},
+         "the same run with other headings at the start, and a minute's standing with the tracker on", {}, Mean,
+         false, {},
+         "a tracker whose place drifts slowly looks the same while the robot drives; let it stand for a minute with "
+         "the tracker on: a floor moves no robot that stands, and a tracker that drifts goes on"},
         // Collisions and hands move the robot without its wheels. with rate q the pose jumps by about s
         {"collision_push", 14, "the robot is pushed now and then",
          {{"push.rate", 0.0, 1.0, 0.03, "rare", {0.02}},

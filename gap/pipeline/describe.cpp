@@ -125,6 +125,13 @@ void add_causes(const Study& study, const Judged& judged, Verdict& verdict) {
     pass_over_empty(verdict);
 }
 
+/// What is no effect of the catalogue and is taken for one.
+void add_mistaken(const Study& study, const Judged& judged, Verdict& verdict) {
+    for (const std::size_t effect : judged.chosen.selection.chosen.effects)
+        if (const char* mistaken = effect_of(study, effect).mistaken; mistaken != nullptr)
+            verdict.cautions.push_back(fmt::format("{}: {}", effect_of(study, effect).name, mistaken));
+}
+
 void add_tried(const Study& study, const Selection& selection, Verdict& verdict) {
     for (const Trial& trial : selection.trials) {
         const Effect& own = effect_of(study, trial.effect);
@@ -203,6 +210,7 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
         verdict.nearest = causes_of(study, *judged.refused, precision_of(study, judged.refused->final),
                                     judged.refused_forms);
     add_causes(study, judged, verdict);
+    add_mistaken(study, judged, verdict);
     verdict.series = std::move(judged.diagnosis.series);
     verdict.leftovers = std::move(judged.diagnosis.leftovers);
     verdict.free_forms = std::move(judged.diagnosis.free_forms);

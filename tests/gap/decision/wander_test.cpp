@@ -3,10 +3,12 @@
 
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/fit_test/wander.h"
+#include "gap/pipeline/analyse.h"
 #include "tests/gap/decision/toy_drives.h"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -69,4 +71,19 @@ TEST_CASE("a heading at the edge of two sectors is in one of them", "[gap][wande
     CHECK(covariates[0].name == "theta");
     const std::set<double> first(covariates[0].value.begin(), covariates[0].value.begin() + 40);
     CHECK(first.size() == 1);
+}
+
+TEST_CASE("a pull in the room comes with what looks like it: a tracker whose place drifts",
+          "[gap][decision]") {
+    Experiment experiment = toy_drives([](RandomStream&, int, int, double) { return Made{}; });
+    for (Run& run : experiment.runs)
+        for (std::size_t i = 0; i < run.rows; ++i)
+            run.columns["x_m"][i] += 1e-3 * run.columns["t_s"][i];
+    const Verdict verdict = analyse(experiment, {});
+    REQUIRE(verdict.causes.size() == 1);
+    CHECK(verdict.causes.front().name == "floor_tilt");
+    CHECK(std::any_of(verdict.cautions.begin(), verdict.cautions.end(), [](const std::string& caution) {
+        return caution.starts_with("floor_tilt: a tracker whose place drifts") &&
+               caution.find("stand for a minute") != std::string::npos;
+    }));
 }
