@@ -100,7 +100,7 @@ char separator_of(std::string_view header) {
     return ',';
 }
 
-/// Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of the file says which.
+/// Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of the file shows which.
 void refuse_thousands(const std::filesystem::path& file, const CsvTable& table,
                       const std::vector<Commas>& commas) {
     const auto clear = [](const Commas& one) { return one.any && !one.thousands; };

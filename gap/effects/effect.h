@@ -42,7 +42,7 @@ struct Effect {
     EffectRole role = EffectRole::Mean;
     bool fitted_along = false;  ///< beside every cause where the data can part them (the measuring chain's)
     std::vector<Kind> kinds{};  ///< that of its table first; a table names only the others
-    /// What the catalogue does not have and is taken for it, and what tells the two apart: a caution of any
+    /// What the catalogue does not have and is taken for it, and what separates the two: a caution of any
     /// verdict that names it. nullptr: nothing is known.
     const char* mistaken = nullptr;
 };

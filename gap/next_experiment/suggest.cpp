@@ -116,7 +116,7 @@ std::vector<Suggestion> suggestions_for(const Study& study, const Selection& sel
         const State chosen = carried(study.model(), selection.chosen.fitted.state, *model);
         const State rival = carried(study.model(), draw.fit.fitted.state, *model);
         const double nats = (expected_nats(*model, chosen, rival) + expected_nats(*model, rival, chosen)) / 2;
-        // As often as the longest of them takes: what only has more rows tells no more.
+        // As often as the longest of them takes: what only has more rows separates no better.
         worths.push_back(
             {design.what, nats * static_cast<double>(rows) / static_cast<double>(design.experiment.rows())});
     }

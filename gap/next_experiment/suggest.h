@@ -15,9 +15,9 @@ struct Worth {
     double nats = 0.0;
 };
 
-/// Best first, at most five. What tells nothing is left out, and so is what promises the same as one before
-/// it, within a percent: neither rival minds what is different about it. Those that differ by less than is
-/// printed have one rank.
+/// Best first, at most five. What separates nothing is left out, and so is what promises the same as one
+/// before it, within a percent: neither rival minds what is different about it. Those that differ by less
+/// than is printed have one rank.
 std::vector<Suggestion> ranked(const std::vector<Worth>& worths);
 
 /// For each pair of draws: what the catalogue proposes, with the information it would give, best first.

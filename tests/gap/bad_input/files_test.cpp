@@ -152,9 +152,9 @@ TEST_CASE("decimal commas in quotes between commas are read, thousands are refus
     write_file(folder.path() / "experiment.toml", kToml);
     write_file(folder.path() / "a.csv", quoted("\"0,#5\"", "#@"));
     CHECK(read_experiment(folder.path()).runs.front().column("grey")[3] == 0.35);
-    // Whole numbers beside "1,104" say nothing about which it is.
+    // Whole numbers beside "1,104" show nothing of which it is.
     CHECK_THAT(of_csv(quoted("0", "\"1,@\"")), Contains("column \"reading\"") && Contains("1200 or 1.2"));
-    // A point elsewhere, or a second comma, says that commas part thousands.
+    // A point elsewhere, or a second comma, shows that commas part thousands.
     CHECK_THAT(of_csv(quoted("0.#", "\"1,@\"")), Contains("\"reading\"") && Contains("between thousands"));
     CHECK_THAT(of_csv(quoted("0", "\"1,#00,@\"")), Contains("between thousands"));
     CHECK_THAT(of_csv(table() + "6.0,1,\"0.5,300\n"),

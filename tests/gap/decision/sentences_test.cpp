@@ -58,7 +58,7 @@ TEST_CASE("where nothing was added no figures of no change are given") {
     CHECK(plain_remark("needs a|b|c to vary") == "needs a or b or c to vary");
 }
 
-TEST_CASE("experiments that tell nothing or the same are not offered, equal ones share a rank") {
+TEST_CASE("experiments that separate nothing or the same are not offered, equal ones share a rank") {
     const auto list =
         ranked({{"again", 3.0}, {"with motors on", 3.01}, {"far", 40.0}, {"near", 50.0}, {"other", 1e-5}});
     REQUIRE(list.size() == 3);
@@ -70,7 +70,7 @@ TEST_CASE("experiments that tell nothing or the same are not offered, equal ones
     CHECK(ranked({{"nothing", 0.0}, {"either", 1e-6}}).empty());
 }
 
-TEST_CASE("where nothing tells rivals apart the catalogue's advice is called that") {
+TEST_CASE("where nothing separates rivals the catalogue's advice is called that") {
     Verdict verdict;
     verdict.decision = Decision::CannotTell;
     verdict.suggestions = {{"turn the robot", NAN, {}}};
