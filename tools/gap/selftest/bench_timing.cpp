@@ -75,7 +75,7 @@ void measure_timing(WrittenExperiment& experiment, const K&, const NoiseStyle& s
 const Rig<K>& timing_rig() {
     static const Rig<K> rig{
         "timing",
-        {{"t_host_s", kNoise}, {"t_robot_s", kNoise}, {"frame_ok", 1.0}, {"shifted", 1.0}},
+        {{"t_host_s", kNoise, true}, {"t_robot_s", kNoise, true}, {"frame_ok", 1.0}, {"shifted", 1.0}},
         exact_timing,
         measure_timing,
         [](const TimingKnobs&, std::uint64_t, const std::string&) { return 0.0; }};

@@ -67,7 +67,7 @@ struct EffectInfo {
 struct NoiseFloor {
     const char* column;
     double sd;
-    /// A run begins at any value (a drive's place): what is the same in all its rows is not seen.
+    /// A run begins at any value (a drive's place, two clocks): what is the same in all its rows is not seen.
     bool any_beginning = false;
 };
 
