@@ -24,7 +24,7 @@ const std::vector<std::string>& wanted(Kind kind, const std::string& observable)
         {Kind::Accelerometer, {"time", "pitch", "roll"}},
         {Kind::Timing, {"seq", "bytes", "load"}},
         {Kind::Motion, {"distance so far", "wheel speed", "turn rate", "time"}}};
-    return observable == "bearing_rad" ? kBearing : kOfKind.at(kind);
+    return observable == "bearing" ? kBearing : kOfKind.at(kind);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "gap/predictive/check.h"
+#include "gap/predictive/main_covariates.h"
 #include "gap/predictive/posterior.h"
 #include "gap/stats/robust.h"
 
@@ -66,6 +67,28 @@ const PredictiveCurve& curve_named(const std::vector<PredictiveCheck>& checks, c
 constexpr const char* kNames[] = {"marginal law", "autocorrelation", "grey", "spread per run"};
 
 }  // namespace
+
+TEST_CASE("a bearing is held against its receiver, as its model names both", "[gap][predictive]") {
+    Experiment experiment;
+    experiment.kind = Kind::Rab;
+    Run run;
+    for (int k = 0; k < 40; ++k) {
+        run.columns["distance_m"].push_back(0.1 + 0.01 * k);
+        run.columns["true_bearing_rad"].push_back(0.1 * k);
+        run.columns["bearing_rad"].push_back(0.1 * k + 0.01 * (k % 3));
+        run.columns["receiver"].push_back(k % 12);
+        run.columns["senders"].push_back(1 + k % 4);
+        ++run.rows;
+    }
+    experiment.runs.assign(4, run);
+    const auto model = make_model(experiment);
+    const auto bearing = std::ranges::find(model->observables(), "bearing", &Observable::name);
+    REQUIRE(bearing != model->observables().end());
+    const std::vector<stats::Covariate> all{{"senders", stats::CovariateKind::Number, {}, {}},
+                                            {"receiver", stats::CovariateKind::Label, {}, {}}};
+    CHECK(main_covariates(experiment, bearing->name, all, bearing->row).front().name == "receiver");
+    CHECK(main_covariates(experiment, "strength", all, bearing->row).front().name == "senders");
+}
 
 TEST_CASE("where the model made the data, few p values are small", "[gap][predictive]") {
     const std::uint64_t seed = Catch::rngSeed();
