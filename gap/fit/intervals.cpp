@@ -157,8 +157,10 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
     }
     interval.as_likely = as_likely(study, fit, j, lost, reach);
     for (const double other : interval.as_likely) {
-        interval.low = std::max(std::min(interval.low, other - reach), freed.low);
-        interval.high = std::min(std::max(interval.high, other + reach), freed.high);
+        // A longer period is known as well in parts of itself, and no better.
+        const double width = reach * std::max(value != 0.0 ? std::abs(other / value) : 1.0, 1.0);
+        interval.low = std::max(std::min(interval.low, other - width), freed.low);
+        interval.high = std::min(std::max(interval.high, other + width), freed.high);
     }
     return interval;
 }
