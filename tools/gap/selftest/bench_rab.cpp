@@ -30,19 +30,20 @@ constexpr const char* kLight = "light";  // what the rail cuts: noise comes befo
 class Plan {
   public:
     Plan(const K& knobs, std::uint64_t seed)
-        : knobs_(knobs), chance_(seed, "messages"), place_(seed, "bearings") {}
+        : knobs_(knobs), chance_(seed, "messages"), place_(seed, "bearings"), beat_(seed, "beats") {}
 
     void begin(const char* part) {
         runs_.emplace_back();
         runs_.back().conditions = {{"part", part}};
         t_ = 0.0;
+        beat_begun_ = beat_.uniform() * knobs_.beat_period;
     }
     void send(int messages, double distance, std::size_t receiver, int senders, double rate) {
         WrittenRun& run = runs_.back();
         const double bearing = std::remainder(receiver_direction(receiver) + 0.1 * (2 * place_.uniform() - 1),
                                               2 * std::numbers::pi);
         for (int k = 0; k < messages; ++k, t_ += kSend) {
-            const Sending s{t_, distance, bearing, receiver, senders, kFrame, kSend, rate};
+            const Sending s{t_, distance, bearing, receiver, senders, kFrame, kSend, rate, beat_begun_};
             const Hearing h = hear(knobs_, s, chance_);
             run.column("t_s", "s").values.push_back(t_);
             run.column("distance_m", "cm").values.push_back(distance * 100);
@@ -63,9 +64,9 @@ class Plan {
 
   private:
     K knobs_;
-    RandomStream chance_, place_;
+    RandomStream chance_, place_, beat_;
     std::vector<WrittenRun> runs_;
-    double t_ = 0.0;
+    double t_ = 0.0, beat_begun_ = 0.0;
 };
 
 WrittenExperiment exact_rab(const K& knobs, std::uint64_t seed, const std::string& variant) {

@@ -70,7 +70,7 @@ Hearing hear(const RabKnobs& k, const Sending& s, RandomStream& chance) {
     double kept = std::exp(-2 * others * k.collisions * s.frame_time / s.send_period);
     kept *= 1.0 - k.loss;
     kept *= std::min(1.0, k.poll_rate / s.arrival_rate);
-    const double phase = s.t / k.beat_period - std::floor(s.t / k.beat_period);
+    const double beats = (s.t + s.beat_begun) / k.beat_period, phase = beats - std::floor(beats);
     if (phase < k.beat) kept = 0.0;
     const bool received = chance.uniform() < kept;
     const double light = std::max(std::exp(level), k.far_floor);

@@ -37,6 +37,7 @@ struct Sending {
     std::size_t receiver;  ///< 0..11, nearest to the bearing
     int senders;
     double frame_time, send_period, arrival_rate;
+    double beat_begun = 0.0;  ///< s before t = 0 that the two clocks' beat began
 };
 
 struct Hearing {
