@@ -15,12 +15,12 @@
 namespace puckloop::gap {
 
 /// Finds copies among the runs' observables (their truth, where a kind has no observable column), takes the
-/// later one out and says so as a caution. In kinds that are time series (motion, accelerometer, timing) only
+/// later one out and gives a caution. In kinds that are time series (motion, accelerometer, timing) only
 /// whole runs are taken out: two runs may well begin alike.
 void drop_copies(Experiment& experiment);
 
 /// Leaves out the rows that only repeat a reading with a new time, where each reading was logged a number of
-/// times in a row, and says so as a caution. Readings that agree as often when they do not follow each other
+/// times in a row, and gives a caution. Readings that agree as often when they do not follow each other
 /// (an instrument that stands still, at its end, or with noise below its step) stay. Not in series (motion,
 /// timing).
 void drop_repeats(Experiment& experiment);

@@ -44,7 +44,7 @@ double left_of(const std::vector<FreeForm>& forms, const std::vector<Leftover>& 
 }
 
 /// Is more left of some events that are moved than all causes together know of them beyond one chance for
-/// all, which says nothing of when, where and to whom they happen?
+/// all, which gives no reason for when, where and to whom they happen?
 bool more_left_than_known(const Study& study, const Selection& selection, const std::vector<FreeForm>& forms,
                           const std::vector<Leftover>& leftovers, const std::vector<std::string>& moved) {
     const auto& observables = study.model().observables();

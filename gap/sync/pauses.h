@@ -16,7 +16,7 @@ struct FrameCount {
 FrameCount frame_count(const Run& run, std::size_t row);
 
 /// Of timing without the robot's own clock: sets Run::begun_anew to the rows that come later than the frames
-/// broken or missing before them account for, by half a period or more, and says so as a caution.
+/// broken or missing before them account for, by half a period or more, and gives a caution.
 void find_pauses(Experiment& experiment);
 
 }  // namespace puckloop::gap

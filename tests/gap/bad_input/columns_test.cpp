@@ -15,12 +15,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-std::string cautions_of(const Made& made) {
-    std::string cautions;
-    CHECK(refusal(made, &cautions) == "");
-    return cautions;
-}
-
 std::string degrees(std::size_t, double value) {
     return fmt::format("{:.6g}", value * 57.29578);
 }

@@ -6,6 +6,8 @@
 #include "gap/data/experiment.h"
 #include "tests/scratch.h"
 
+#include <catch2/catch.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -162,6 +164,13 @@ inline std::string refusal(const std::filesystem::path& folder, std::string* cau
 inline std::string refusal(const Made& made, std::string* cautions = nullptr) {
     const Folder folder(made);
     return refusal(folder.path(), cautions);
+}
+
+/// What an experiment that is not refused is warned of.
+inline std::string cautions_of(const Made& made) {
+    std::string cautions;
+    CHECK(refusal(made, &cautions) == "");
+    return cautions;
 }
 
 }  // namespace puckloop::gap::tests

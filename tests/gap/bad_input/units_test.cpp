@@ -11,12 +11,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-std::string cautions_of(const Made& made) {
-    std::string cautions;
-    CHECK(refusal(made, &cautions) == "");
-    return cautions;
-}
-
 Made with_columns(Made made, const std::string& lines) {
     made.toml += "[columns]\n" + lines + "\n";
     return made;

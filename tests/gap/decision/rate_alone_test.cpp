@@ -20,45 +20,42 @@ constexpr std::uint64_t kSeed = 20261127;
 /// `lost`: the chance that a row's message or frame is, by its run and row.
 using Lost = std::function<double(int run, int row)>;
 
-/// Messages from distances in turn.
-Experiment messages(std::uint64_t seed, const Lost& lost) {
-    RandomStream random(seed, "rate alone test");
+/// `row_of(run, r, k)` writes row k of run r.
+Experiment recorded(Kind kind, const std::function<void(Run&, int, int)>& row_of) {
     Experiment experiment;
-    experiment.kind = Kind::Rab;
+    experiment.kind = kind;
     for (int r = 0; r < kRuns; ++r) {
         Run run;
         run.name = "run" + std::to_string(r);
         run.rows = kRows;
-        for (int k = 0; k < kRows; ++k) {
-            run.columns["t_s"].push_back(0.1 * k);
-            run.columns["distance_m"].push_back(0.1 * (1 + k * 5 % 7));
-            run.columns["received"].push_back(random.uniform() < lost(r, k) ? 0 : 1);
-        }
+        for (int k = 0; k < kRows; ++k)
+            row_of(run, r, k);
         experiment.runs.push_back(std::move(run));
     }
     return experiment;
 }
 
+/// Messages from distances in turn.
+Experiment messages(std::uint64_t seed, const Lost& lost) {
+    RandomStream random(seed, "rate alone test");
+    return recorded(Kind::Rab, [&](Run& run, int r, int k) {
+        run.columns["t_s"].push_back(0.1 * k);
+        run.columns["distance_m"].push_back(0.1 * (1 + k * 5 % 7));
+        run.columns["received"].push_back(random.uniform() < lost(r, k) ? 0 : 1);
+    });
+}
+
 /// Frames of a loop that arrive on time.
 Experiment frames(std::uint64_t seed, const Lost& lost) {
     RandomStream random(seed, "rate alone test");
-    Experiment experiment;
-    experiment.kind = Kind::Timing;
-    for (int r = 0; r < kRuns; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        run.rows = kRows;
-        for (int k = 0; k < kRows; ++k) {
-            const double robot = 0.1 * k + 1e-5 * random.normal();
-            run.columns["seq"].push_back(k);
-            run.columns["t_robot_s"].push_back(robot);
-            run.columns["t_host_s"].push_back(robot + 0.0073 + 4e-4 * random.normal());
-            run.columns["bytes"].push_back(84);
-            run.columns["frame_ok"].push_back(random.uniform() < lost(r, k) ? 0 : 1);
-        }
-        experiment.runs.push_back(std::move(run));
-    }
-    return experiment;
+    return recorded(Kind::Timing, [&](Run& run, int r, int k) {
+        const double robot = 0.1 * k + 1e-5 * random.normal();
+        run.columns["seq"].push_back(k);
+        run.columns["t_robot_s"].push_back(robot);
+        run.columns["t_host_s"].push_back(robot + 0.0073 + 4e-4 * random.normal());
+        run.columns["bytes"].push_back(84);
+        run.columns["frame_ok"].push_back(random.uniform() < lost(r, k) ? 0 : 1);
+    });
 }
 
 double of_distance(int /*run*/, int row) {
