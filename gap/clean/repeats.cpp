@@ -18,7 +18,7 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kMostTimes = 8;     // in a row; more is an instrument that stands still
+constexpr std::size_t kMostTimes = 100;   // in a row; more is an instrument that stands still
 constexpr std::size_t kLeastBlocks = 20;  // stretches that show it
 constexpr double kAllBut = 0.01;          // of the stretches: rows may be missing
 constexpr double kMissing = -1e300;       // as a value that is alike in all rows
@@ -93,12 +93,15 @@ class Repeats {
 
   private:
     std::size_t end_of(const Run& run, const Chain& chain, std::size_t from) const {
-        const auto same = [&](std::size_t row) {
-            return row_of(run, readings_, row) == row_of(run, readings_, chain[from]) &&
+        const auto same = [&](std::size_t k) {
+            const std::size_t row = chain[k];
+            // A row whose clock stands as well is a copy (drop_copies).
+            const bool later = !run.has("t_s") || run.column("t_s")[row] != run.column("t_s")[chain[k - 1]];
+            return later && row_of(run, readings_, row) == row_of(run, readings_, chain[from]) &&
                    row_of(run, set_, row) == row_of(run, set_, chain[from]);
         };
         std::size_t to = from + 1;
-        while (to < chain.size() && same(chain[to]))
+        while (to < chain.size() && same(to))
             ++to;
         return to;
     }

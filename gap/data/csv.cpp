@@ -114,6 +114,14 @@ void refuse_thousands(const std::filesystem::path& file, const CsvTable& table,
                              "nothing between thousands, and a decimal point");
 }
 
+/// Lines that are quoted as a whole are one cell each.
+void refuse_quoted_line(const std::filesystem::path& file, std::string_view header) {
+    const auto cells = csv_cells(header, ',');
+    if (cells.size() == 1 && header.starts_with('"') && cells.front().find(',') != std::string_view::npos)
+        throw InputError(file.string(), kHeader, "is one quoted cell with separators in it",
+                         "each name and number as a cell of its own, without quotes about whole lines");
+}
+
 void read_header(const std::filesystem::path& file, std::string_view line, char separator, CsvTable& table) {
     for (const auto cell : csv_cells(line, separator)) {
         double ignored = 0.0;
@@ -183,6 +191,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (text.empty() || text.front() == '#') continue;
         if (first) {
             separator = separator_of(line);
+            refuse_quoted_line(file, line);
             if (text.find(separator) == std::string_view::npos && text.find(' ') != std::string_view::npos)
                 throw InputError(file.string(), kHeader, "has only blanks between names",
                                  "a comma, semicolon or tab");

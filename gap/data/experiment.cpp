@@ -171,7 +171,8 @@ void read_constants(Reader& reader, Kind kind, const TomlValue& table, Frame& fr
 }
 
 bool same_letters(std::string_view a, std::string_view b) {
-    return std::ranges::equal(a, b, {}, ::tolower, ::tolower);
+    const auto small = [](unsigned char letter) { return std::tolower(letter); };
+    return std::ranges::equal(a, b, {}, small, small);
 }
 
 /// All columns that are not there, in one line; with them what has other capitals, which a caution would name

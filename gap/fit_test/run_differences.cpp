@@ -202,7 +202,8 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
         high = std::max(high, run.estimate());
     }
     const auto freedom = static_cast<double>(n - 1);
-    const double reach = std::ranges::max(mode.shift) - std::min(std::ranges::min(mode.shift), 0.0);
+    const double reach =
+        std::max(std::ranges::max(mode.shift), 0.0) - std::min(std::ranges::min(mode.shift), 0.0);
     if ((high - low) * reach < step) {
         result.gain = 0.0;
         return result;

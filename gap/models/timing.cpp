@@ -36,6 +36,7 @@ constexpr std::size_t kTried = 3;         // peaks
 constexpr double kShortestBatch = 0.001;  // s
 constexpr double kLongestAlias = 1.0;     // s: the longest that is believed of a batch
 constexpr int kMostTimes = 10;            // of a batch: its multiples and parts that are tried
+constexpr int kMostRates = 50;            // frame rates between two batches' rates, either way
 constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
 constexpr double kFewSteps = 4.0;         // between quartiles: beyond, the middle half is the better
 constexpr double kNextSteps = 1.5;        // of a clock: between its next step and the one beyond
@@ -168,8 +169,8 @@ class TimingModel final : public ModelOf<Numbers> {
         }
         const double rate = 1 / usual_step(arrivals_ready(nominal()));
         if (!std::isfinite(rate)) return all;
-        for (double other = std::remainder(1 / value, rate); other <= 1 / shortest_; other += rate)
-            if (other > 0) take(1 / other);
+        for (int apart = -kMostRates; apart <= kMostRates; ++apart)
+            if (const double other = 1 / value + apart * rate; apart != 0 && other > 0) take(1 / other);
         return all;
     }
 

@@ -79,22 +79,25 @@ double expected_nats(const Model& design, const State& truth, const State& other
 std::vector<Suggestion> ranked(const std::vector<Worth>& worths) {
     constexpr double kSame = 0.01;    // share: neither rival minds what is different
     constexpr double kEqual = 0.005;  // bits: no difference in what is printed
+    const auto size = [&](std::size_t i) { return std::isnan(worths[i].nats) ? 0.0 : worths[i].nats; };
     std::vector<Suggestion> out;
-    std::vector<std::size_t> kept;
-    for (const std::size_t i : stats::ordered(
-             worths.size(), [&](std::size_t a, std::size_t b) { return worths[a].nats > worths[b].nats; })) {
+    std::size_t simplest = 0;  // of those that promise the same as the last one taken
+    double nats = 0.0;         // of the best of these
+    for (const std::size_t i :
+         stats::ordered(worths.size(), [&](std::size_t a, std::size_t b) { return size(a) > size(b); })) {
         const double bits = bits_of(worths[i].nats);
-        if (bits < kLeastBits) break;
-        if (!kept.empty() && worths[i].nats > worths[kept.back()].nats * (1 - kSame)) {
-            kept.back() = std::min(kept.back(), i);  // the simpler ones come first in the grid
-            out.back().what = worths[kept.back()].what;
+        if (!(bits >= kLeastBits)) continue;
+        if (!out.empty() && worths[i].nats > nats * (1 - kSame)) {
+            simplest = std::min(simplest, i);  // the simpler ones come first in the grid
+            out.back().what = worths[simplest].what;
             continue;
         }
         if (out.size() == kMostSuggestions) break;
         const bool equal = !out.empty() && out.back().bits - bits < kEqual;
         const int rank = equal ? out.back().rank : static_cast<int>(out.size()) + 1;
         out.push_back({worths[i].what, bits, {}, rank});
-        kept.push_back(i);
+        simplest = i;
+        nats = worths[i].nats;
     }
     return out;
 }

@@ -47,7 +47,6 @@ void add_floor(const Experiment& experiment, const Series& series, Table& table)
     const stats::NoiseFloor floor = stats::noise_floor(
         {series.measured, runs},
         stimuli.empty() || sums ? std::vector<int>(rows, -1) : stats::stimulus_numbers(stimuli));
-    // What happened or not has no size that a difference could give.
     const double before = rms_of(left_over(series, Stage::Before));
     double single = stats::row_to_row({left_over(series, Stage::Before), runs}, chains_of(covariates, rows));
     if (single < kRounding * before) single = 0.0;

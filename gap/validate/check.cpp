@@ -242,9 +242,9 @@ void check(Experiment& experiment, Problems* problems) {
             if (run.has(clock)) step([&] { check_clock(experiment, run, clock); });
     if (problems != nullptr && !problems->empty()) return;
     step([&] {
+        drop_repeats(experiment);  // before cells are filled, which then differ in rows that were alike
         fill_missing(experiment);
         drop_copies(experiment);
-        drop_repeats(experiment);
         check_runs(experiment);
         check_mixed(experiment);
         check_kind(experiment);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kFar = 4.0;          // factor
 constexpr std::size_t kFewest = 8;    // stretches that say something
-constexpr double kWay = 0.05;         // m, asked or seen: beyond a tracker's noise
+constexpr double kWay = 0.05;         // m that are asked: beyond a tracker's noise
 constexpr double kLeastAsked = 1e-4;  // m: wheels that stand ask for nothing
 constexpr double kMostTurned = 0.5;   // rad: beyond, a marker off the axle moves by itself
 constexpr double kAlongAxis = 0.5;    // share of a stretch's way that lies along x or y
@@ -65,8 +65,8 @@ void measure(const Experiment& experiment, const Run& run, Ratios& ratios) {
         asked.x += way * std::cos(middle), asked.y += way * std::sin(middle), asked.turned += turn;
         turned += turn;
         const bool known = std::isfinite(asked.x + turned + x[i] + y[i] + theta[i]);
-        const bool far = std::max(std::hypot(asked.x, asked.y),
-                                  std::hypot(x[i] - x[asked.first], y[i] - y[asked.first])) >= kWay;
+        // By what was asked: a stretch that ended where the tracker errs would have its error as its way.
+        const bool far = std::hypot(asked.x, asked.y) >= kWay;
         if (known && far) take(run, asked, i, ratios);
         if (!known || far || std::abs(asked.turned) > kMostTurned) asked = {i};
         if (known && std::abs(turned) >= kLeastTurn)

@@ -31,7 +31,7 @@ std::string others_words(const FittedParameter& p) {
         words.push_back(quantity(*one, p.unit));
     if (words.empty()) return "";
     if (p.as_likely.size() > words.size())
-        words.push_back(fmt::format("{} other single values", p.as_likely.size() - words.size()));
+        words.push_back(fmt::format("{} more single values", p.as_likely.size() - words.size()));
     return fmt::format("; {} fit{} as well", listed(words, "and"), p.as_likely.size() == 1 ? "s" : "");
 }
 

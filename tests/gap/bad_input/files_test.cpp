@@ -87,6 +87,11 @@ TEST_CASE("files that cannot be used are refused with a line") {
     CHECK_THAT(refusal(folder.path() / "experiment.toml"), Contains("not a folder"));
 }
 
+TEST_CASE("lines that are quoted as a whole are refused once") {
+    CHECK_THAT(of_csv("\"grey,reading\"\n\"0.1,300\"\n\"0.2,400\"\n"),
+               Contains("header") && Contains("one quoted cell with separators in it"));
+}
+
 TEST_CASE("all headers with other capitals are named at once") {
     const std::string line =
         of_csv(replaced(replaced(replaced(table(), "t_s", "T_s"), "grey", "Grey"), "reading", "READING"));

@@ -103,6 +103,7 @@ double kept(Experiment experiment) {
 TEST_CASE("readings that were logged several times count once") {
     CHECK(kept(floor_of({.logged = 2})) == Approx(1 / 2.0).margin(0.01));
     CHECK(kept(floor_of({.logged = 3})) == Approx(1 / 3.0).margin(0.01));
+    CHECK(kept(floor_of({.logged = 12})) == Approx(1 / 12.0).margin(0.01));
     CHECK(kept(floor_of({.logged = 3, .in_turn = true})) == Approx(1 / 3.0).margin(0.01));
     CHECK(kept(floor_of({.measured = 2, .logged = 2})) == Approx(1 / 2.0).margin(0.01));
     CHECK(kept(floor_of({.logged = 2, .noise = 0.6})) == Approx(1 / 2.0).margin(0.01));
