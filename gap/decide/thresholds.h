@@ -44,6 +44,11 @@ inline constexpr double kSureWalk = 1e-7;
 /// may come from the scatter that goes with them. Half: else it is scatter by another name.
 inline constexpr double kMeanShare = 0.5;
 
+/// Of the pushes that a fit counts: at least this part must lie in rows that were more likely pushed than
+/// not. Half: else it does not show where it was pushed. And corrected p below which pushes keep to
+/// something.
+inline constexpr double kPushesShown = 0.5, kPushesByChance = 1e-3;
+
 /// A sum whose own noise is less than this part of its rounding is not asked row by row: what rows say is
 /// what the rounding says (a step of q has a sd of 0.29 q, which then is all there is).
 inline constexpr double kFineNoise = 0.25;

@@ -22,7 +22,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kLeastPushes = 3.0;
-constexpr double kByChance = 1e-3;  // corrected p above which nothing is reported
 constexpr double kIsPush = 0.5;
 
 double sum_of(const std::vector<double>& all) {
@@ -165,7 +164,7 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
     double seen = 0.0;
     for (const double one : rows.pushed)
         seen += one > kIsPush ? one : 0.0;
-    if (seen < thresholds::kMeanShare * hoped)
+    if (seen < thresholds::kPushesShown * hoped)
         return PushPattern{"rows that were as likely not pushed", hoped - seen, hoped, hoped - seen, 1.0};
     if (sum_of(rows.pushed) < kLeastPushes) return std::nullopt;
     Look look;
@@ -176,7 +175,7 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
     look.at(ways.least());
     look.at(by_run(rows, hoped));
     const PushPattern found = look.least();
-    return found.p_value > kByChance ? std::nullopt : std::optional(found);
+    return found.p_value > thresholds::kPushesByChance ? std::nullopt : std::optional(found);
 }
 
 }  // namespace puckloop::gap
