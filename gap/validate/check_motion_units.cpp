@@ -89,11 +89,7 @@ std::string advice(const Experiment& experiment, const std::vector<std::string_v
     const ColumnInfo& info = *find_column(experiment.kind, columns.front());
     const std::string_view unit = likely_unit(experiment, info, ratio, 1.0);
     if (unit.empty()) return fmt::format("is the unit of {} right?", fmt::join(columns, " and "));
-    std::vector<std::string> lines;
-    for (const std::string_view column : columns)
-        lines.push_back(unit_line(experiment, column, unit));
-    return fmt::format("if the files' numbers are in {}, state {} in [columns]", unit,
-                       fmt::join(lines, ", "));
+    return to_state(experiment, columns, unit);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -95,11 +94,17 @@ stats::Range sizes_of(const Experiment& experiment, std::string_view column) {
     return sizes;
 }
 
-/// What `advice` a caution ends with.
+/// `distance_m = "cm"`, as [columns] takes it, or with `from` where the file has another name for it.
+std::string unit_line(const Experiment& experiment, std::string_view column, std::string_view unit) {
+    const auto place = experiment.stated.find(column);
+    if (place == experiment.stated.end() || place->second.from == column)
+        return fmt::format("{} = \"{}\"", column, unit);
+    return fmt::format("{} = {{ from = \"{}\", unit = \"{}\" }}", column, place->second.from, unit);
+}
+
+/// What a caution about one column ends with; `unit` is the likely one, or empty.
 std::string remedy(const Experiment& experiment, const ColumnInfo& info, std::string_view unit) {
-    if (unit.empty()) return "is its unit right?";
-    return fmt::format("if the files' numbers are in {}, state {} in [columns]", unit,
-                       unit_line(experiment, info.name, unit));
+    return unit.empty() ? "is its unit right?" : to_state(experiment, {info.name}, unit);
 }
 
 void check_size(Experiment& experiment, const ColumnInfo& info) {
@@ -287,11 +292,13 @@ std::string_view likely_unit(const Experiment& experiment, const ColumnInfo& inf
     return best;
 }
 
-std::string unit_line(const Experiment& experiment, std::string_view column, std::string_view unit) {
-    const auto place = experiment.stated.find(column);
-    if (place == experiment.stated.end() || place->second.from == column)
-        return fmt::format("{} = \"{}\"", column, unit);
-    return fmt::format("{} = {{ from = \"{}\", unit = \"{}\" }}", column, place->second.from, unit);
+std::string to_state(const Experiment& experiment, const std::vector<std::string_view>& columns,
+                     std::string_view unit) {
+    std::vector<std::string> lines;
+    for (const std::string_view column : columns)
+        lines.push_back(unit_line(experiment, column, unit));
+    return fmt::format("if the files' numbers are in {}, state {} in [columns]", unit,
+                       fmt::join(lines, ", "));
 }
 
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value) {

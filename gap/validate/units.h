@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace puckloop::gap {
 
@@ -18,8 +19,10 @@ std::string_view likely_unit(const Experiment& experiment, const ColumnInfo& inf
 /// "run1.csv" or "run1.csv and 5 more files": those that have the column.
 std::string files_with(const Experiment& experiment, std::string_view column);
 
-/// `distance_m = "cm"`, as [columns] takes it, or with `from` where the file has another name for it.
-std::string unit_line(const Experiment& experiment, std::string_view column, std::string_view unit);
+/// What to do where columns are likely in this unit: "if the files' numbers are in cm, state ... in
+/// [columns]".
+std::string to_state(const Experiment& experiment, const std::vector<std::string_view>& columns,
+                     std::string_view unit);
 
 /// What to do about an impossible value of this column (SI): "; numbers in mm need ...", or nothing.
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value);
