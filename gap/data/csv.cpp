@@ -100,13 +100,12 @@ char separator_of(std::string_view header) {
     return ',';
 }
 
-/// Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of the file shows which.
+/// Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of its column shows which:
+/// programs that group thousands do so beside columns with decimals.
 void refuse_thousands(const std::filesystem::path& file, const CsvTable& table,
                       const std::vector<Commas>& commas) {
-    const auto clear = [](const Commas& one) { return one.any && !one.thousands; };
-    if (std::any_of(commas.begin(), commas.end(), clear)) return;
     for (std::size_t i = 0; i < commas.size(); ++i)
-        if (commas[i].any)
+        if (commas[i].any && commas[i].thousands)
             throw InputError(file.string(), "",
                              fmt::format("column \"{}\" has three digits behind every comma: thousands or "
                                          "decimals (\"1,200\" is 1200 or 1.2)?",

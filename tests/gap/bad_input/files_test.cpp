@@ -159,6 +159,9 @@ TEST_CASE("decimal commas in quotes between commas are read, thousands are refus
     CHECK(read_experiment(folder.path()).runs.front().column("grey")[3] == 0.35);
     // Whole numbers beside "1,104" show nothing of which it is.
     CHECK_THAT(of_csv(quoted("0", "\"1,@\"")), Contains("column \"reading\"") && Contains("1200 or 1.2"));
+    // Nor do decimal commas of another column.
+    CHECK_THAT(of_csv(quoted("\"0,#5\"", "\"2,@\"")),
+               Contains("column \"reading\"") && Contains("1200 or 1.2"));
     // A point elsewhere, or a second comma, shows that commas part thousands.
     CHECK_THAT(of_csv(quoted("0.#", "\"1,@\"")), Contains("\"reading\"") && Contains("between thousands"));
     CHECK_THAT(of_csv(quoted("0", "\"1,#00,@\"")), Contains("between thousands"));
