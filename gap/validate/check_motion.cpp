@@ -117,30 +117,6 @@ void check_commands(const Experiment& experiment, const Run& run) {
 
 constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
 
-/// Rows over which the wheels went or turned so far: m and rad by them.
-struct Stretch {
-    std::size_t first, last;
-    double way, turned;
-};
-
-std::vector<Stretch> stretches_of(const Run& run, double metre_per_step, double axle) {
-    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
-    std::vector<Stretch> all;
-    Stretch one{0, 0, 0.0, 0.0};
-    for (std::size_t i = 1; i < run.rows; ++i) {
-        const auto [left, right] = steps_made(run, i);
-        one.last = i;
-        one.way += (left + right) / 2 * metre_per_step;
-        one.turned += (right - left) * metre_per_step / axle;
-        const bool known =
-            std::isfinite(one.way + x[i] + y[i] + theta[i] + x[one.first] + y[one.first] + theta[one.first]);
-        if (known && std::abs(one.way) < kLeastWay && std::abs(one.turned) < kLeastTurn) continue;
-        if (known) all.push_back(one);
-        one = {i, i, 0.0, 0.0};
-    }
-    return all;
-}
-
 /// How many times as far as its wheels a heading turns.
 std::vector<double> turns_of(const Run& run, const std::vector<Stretch>& stretches) {
     const auto& theta = run.column("theta_rad");
@@ -223,13 +199,33 @@ std::array<double, 2> steps_made(const Run& run, std::size_t row) {
     return {left[row - 1] * span, right[row - 1] * span};
 }
 
+std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, double least_way,
+                                  double least_turn) {
+    const double metre = metres_per_step(experiment),
+                 axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
+    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
+    std::vector<Stretch> all;
+    Stretch one{0, 0, 0.0, 0.0};
+    for (std::size_t i = 1; i < run.rows; ++i) {
+        const auto [left, right] = steps_made(run, i);
+        one.last = i;
+        one.way += (left + right) / 2 * metre;
+        one.turned += (right - left) * metre / axle;
+        const bool known =
+            std::isfinite(one.way + x[i] + y[i] + theta[i] + x[one.first] + y[one.first] + theta[one.first]);
+        if (known && std::abs(one.way) < least_way && std::abs(one.turned) < least_turn) continue;
+        if (known) all.push_back(one);
+        one = {i, i, 0.0, 0.0};
+    }
+    return all;
+}
+
 /// Left and right wheel exchanged turn the other way; millimetres taken for metres go a thousand times too
 /// far.
 void check_motion(Experiment& experiment) {
     double agree = 0.0, turned = 0.0;
     double driven = 0.0, tracked = 0.0, duration = 0.0, asked_way = 0.0;
     bool steps = false, heading_fixed = true;
-    const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
     const double metre_per_step = metres_per_step(experiment);
     std::vector<std::pair<const Run*, std::vector<Stretch>>> driven_by_run;
     for (const Run& run : experiment.runs) {
@@ -245,7 +241,7 @@ void check_motion(Experiment& experiment) {
         if (run.has("steps_left"))
             for (const char* counter : {"steps_left", "steps_right"})
                 check_counter(experiment, run, counter, metre_per_step);
-        driven_by_run.emplace_back(&run, stretches_of(run, metre_per_step, axle));
+        driven_by_run.emplace_back(&run, stretches_of(experiment, run, kLeastWay, kLeastTurn));
         check_commands(experiment, run);
         check_holes(experiment, run);
         if (path.largest_turn > 2.5)

@@ -34,6 +34,15 @@ double metres_per_step(const Experiment& experiment);
 /// without them, as commanded; NaN where either is missing.
 std::array<double, 2> steps_made(const Run& run, std::size_t row);
 
+/// Rows of a motion run over which its wheels went or turned at least so far: m and rad by them.
+struct Stretch {
+    std::size_t first, last;
+    double way, turned;
+};
+/// One behind the other, each as short as may be; the pose is known at both ends.
+std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, double least_way,
+                                  double least_turn);
+
 /// Rows of two robots in one file, where no column `unit` says so. Motion: InputError if a run's pose jumps
 /// to and fro between two paths. Timing: InputError if `seq` does not count on; a caution where frames come
 /// twice as often as `nominal_period` says. Proximity, ground, microphone: a caution if what was measured at
