@@ -83,13 +83,16 @@ void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict
     for (const auto& rival : verdict.rivals)
         fmt::print("  rival of {}: {} ({}), delta BIC {:.1f}\n", rival.instead_of, rival.cause.name,
                    rival.cause.number, rival.delta_bic);
-    constexpr std::size_t kLines = 6;  // the clearest come first; all are in gap.json and the report
+    constexpr double kLeastP = 1e-300;  // by a double no less
+    constexpr std::size_t kLines = 6;   // the clearest come first; all are in gap.json and the report
     std::vector<std::string> printed;
     for (const auto& left : verdict.leftovers) {
         auto line = fmt::format("{} against {}: {}", gap::plain_observable(left.observable), left.covariate,
                                 left.shape);
         if (std::find(printed.begin(), printed.end(), line) != printed.end()) continue;
-        if (printed.size() < kLines) fmt::print("  left: {} (p {:.2g})\n", line, left.p_value);
+        const auto p =
+            left.p_value < kLeastP ? std::string("below 1e-300") : fmt::format("{:.2g}", left.p_value);
+        if (printed.size() < kLines) fmt::print("  left: {} (p {})\n", line, p);
         printed.push_back(std::move(line));
     }
     if (printed.size() > kLines) fmt::print("  left: and {} more\n", printed.size() - kLines);
