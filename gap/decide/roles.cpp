@@ -7,6 +7,7 @@
 #include "gap/evidence/criterion.h"
 #include "gap/fit/noise.h"
 #include "gap/fit_test/run_differences.h"
+#include "gap/fit_test/wander.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/stats/series.h"
 #include "gap/stats/tails.h"
@@ -51,7 +52,14 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     const double shaped = gained_by_shape(forms);
     if (shaped > 0 && too_much(shaped)) return "explains scatter that has a shape";
     // Larger errors cover any mean that the model lacks: with one that is left for sure, who knows how much.
-    return std::ranges::any_of(leftovers, sure) ? "explains scatter beside a structure that is left" : "";
+    // How much a walk is worth is known.
+    const auto is_left = [&](const Leftover& left) {
+        return left.covariate == kWanderCovariate
+                   ? is_touched(left.observable) && left.p_value < thresholds::kSureWalk &&
+                         too_much(-std::log(left.p_value))
+                   : sure(left);
+    };
+    return std::ranges::any_of(leftovers, is_left) ? "explains scatter beside a structure that is left" : "";
 }
 
 /// How large something is in the rows where it acts, which may be few: those that it moves most count most.
@@ -144,16 +152,14 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
         std::ranges::copy_if(fit.effects, std::back_inserter(effects), are);
         return effects;
     };
-    const auto is = [&](std::size_t effect, EffectRole role) {
-        return study.candidates()[effect].effect->role == role;
-    };
     auto doubted = those([&](std::size_t effect) { return within_rounding(study, fit, effect); });
     if (!doubted.empty()) return {doubted, "moves readings by no more than their rounding or cutting off"};
     doubted = those([&](std::size_t effect) {
-        return is(effect, EffectRole::Mean) && mean_share(study, fit, effect) < thresholds::kMeanShare;
+        return study.candidates()[effect].effect->role == EffectRole::Mean &&
+               mean_share(study, fit, effect) < thresholds::kMeanShare;
     });
     if (!doubted.empty()) return {doubted, "gains by larger errors, not by the means it moves"};
-    const auto outliers = those([&](std::size_t effect) { return is(effect, EffectRole::Outlier); });
+    const auto outliers = those([&](std::size_t effect) { return is_outlier(study, effect); });
     if (!outliers.empty() && push_pattern(study.experiment(), study.model(), fit.fitted.state))
         return {{outliers.front()},
                 "keeps to a place, a command, a run or a direction, goes back, or shows in no row for sure; "

@@ -66,6 +66,10 @@ bool Contrast::moves_more_than_means() const {
     return false;
 }
 
+bool is_outlier(const Study& study, std::size_t effect) {
+    return study.candidates()[effect].effect->role == EffectRole::Outlier;
+}
+
 Contrast contrast(const Study& study, const Fit& fit, std::span<const std::size_t> effects) {
     State state = fit.fitted.state;
     Contrast both{study.model().predicted(state.values), {}};
@@ -81,8 +85,9 @@ std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit) {
     // A dead zone or a rail moves what is read, if not the mean before it.
     if (std::ranges::any_of(with, [](const Predicted& p) { return p.floor > 0 || p.ceiling > 0; }))
         return list;
-    std::ranges::copy_if(fit.effects, std::back_inserter(list),
-                         [&](std::size_t effect) { return !contrast(study, fit, effect).moves_means(); });
+    std::ranges::copy_if(fit.effects, std::back_inserter(list), [&](std::size_t effect) {
+        return is_outlier(study, effect) || !contrast(study, fit, effect).moves_means();
+    });
     return list;
 }
 

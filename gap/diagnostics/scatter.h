@@ -29,7 +29,10 @@ inline Contrast contrast(const Study& study, const Fit& fit, std::size_t effect)
     return contrast(study, fit, {&effect, 1});
 }
 
-/// The effects of a fit that move no prediction's mean.
+/// Makes single errors large at moments of their own. A mean may follow, where a sum goes on from there.
+bool is_outlier(const Study& study, std::size_t effect);
+
+/// The effects of a fit that move no prediction's mean by themselves.
 std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit);
 
 /// Names of the observables whose noise or chances differ by these effects of a fit.

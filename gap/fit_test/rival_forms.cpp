@@ -123,6 +123,7 @@ std::vector<double> flat(const std::vector<Part>& parts, std::size_t form) {
 }  // namespace
 
 std::vector<RivalForm> rival_forms(const Study& study, const Fit& fit, std::size_t effect) {
+    if (is_outlier(study, effect)) return {};
     const auto [with, without] = contrast(study, fit, effect);
     std::vector<Part> parts;
     for (std::size_t k = 0; k < with.size(); ++k) {

@@ -393,7 +393,7 @@ class MotionModel final : public ModelOf<Numbers> {
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (robot.axle_length * robot.axle_length);
             }
-            if (values.push.rate > 0 && motors.settled[i] != 0) {
+            if (values.push.rate > 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(values.push.rate * span, 0.5);
                     out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;
@@ -415,11 +415,15 @@ class MotionModel final : public ModelOf<Numbers> {
     void predict_place(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
                        Prediction& out) const {
         const std::size_t n = steps.size();
-        thread_local std::vector<double> above, errors;
+        thread_local std::vector<double> above, kept, errors;
         above.resize(n);
         for (std::size_t i = 0; i < n; ++i)
             above[i] = observables_[2].y[first + i] - out[2].mean[first + i];
-        heading_errors(above, path.time, span, errors);
+        kept.clear();
+        if (!out[2].lapse.empty())
+            kept_headings(above, std::span(out[2].lapse).subspan(first, n),
+                          std::span(out[2].lapse_scale).subspan(first, n), kept);
+        heading_errors(above, path.time, span, kept, errors);
         double along = 0, across = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const Step& step = steps[i];

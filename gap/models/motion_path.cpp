@@ -9,9 +9,12 @@ namespace {
 
 constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
-constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
-constexpr double kSameTime = 1e-6;     // s
-constexpr double kLeastChance = 1e-6;  // of losing a command again and again
+constexpr double kLongestSlip = 0.7;    // s: no change of speed costs way for longer
+constexpr double kSameTime = 1e-6;      // s
+constexpr double kLeastChance = 1e-6;   // of losing a command again and again
+constexpr double kSdOfMiddle = 1.4826;  // standard deviation over the middle of absolute errors, normal law
+constexpr double kLeastTurn = 1e-9;     // rad: what rounding of numbers makes
+constexpr double kLeastDensity = 1e-300;
 
 void add_paces(const WheelCurve& curve, CurveReader& reader, double from, double to,
                std::vector<Pace>& paces) {
@@ -114,20 +117,22 @@ Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double 
 }
 
 void heading_errors(std::span<const double> above, std::span<const double> time, double span,
-                    std::vector<double>& errors) {
+                    std::span<const double> kept, std::vector<double>& errors) {
     const std::size_t n = above.size();
     errors.assign(n, 0.0);
     thread_local std::vector<double> sums, weights;
     sums.resize(n);
     weights.resize(n);
-    double sum = 0.0, weight = 0.0, kept = 0.0, step = -1.0;
-    const auto fade = [&](double seconds) {
-        if (seconds != step) kept = std::exp(-(step = seconds) / span);
-        sum *= kept;
-        weight *= kept;
+    double sum = 0.0, weight = 0.0, faded = 0.0, step = -1.0;
+    const auto fade_over = [&](std::size_t row) {
+        const double seconds = time[row] - time[row - 1];
+        if (seconds != step) faded = std::exp(-(step = seconds) / span);
+        const double left = kept.empty() ? faded : faded * kept[row];
+        sum *= left;
+        weight *= left;
     };
     for (std::size_t i = 0; i < n; ++i) {
-        if (i > 0) fade(time[i] - time[i - 1]);
+        if (i > 0) fade_over(i);
         sums[i] = sum += above[i];
         weights[i] = weight += 1.0;
     }
@@ -136,7 +141,26 @@ void heading_errors(std::span<const double> above, std::span<const double> time,
         errors[i] = above[i] - (sums[i] + sum) / (weights[i] + weight);
         sum += above[i];
         weight += 1.0;
-        if (i > 0) fade(time[i] - time[i - 1]);
+        if (i > 0) fade_over(i);
+    }
+}
+
+void kept_headings(std::span<const double> above, std::span<const double> chance,
+                   std::span<const double> turn, std::vector<double>& kept) {
+    kept.assign(above.size(), 1.0);
+    thread_local std::vector<double> sizes;
+    sizes.clear();
+    for (std::size_t i = 1; i < above.size(); ++i)
+        sizes.push_back(std::abs(above[i] - above[i - 1]));
+    if (sizes.empty()) return;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::ranges::nth_element(sizes, middle);
+    const double sd = std::max(kSdOfMiddle * *middle, kLeastTurn);
+    for (std::size_t i = 1; i < above.size(); ++i) {
+        const double off = (above[i] - above[i - 1]) / sd, wide = std::hypot(turn[i] / sd, 1.0);
+        const double turned = chance[i] / wide * std::exp(-off * off / (2 * wide * wide)),
+                     calm = (1 - chance[i]) * std::exp(-off * off / 2);
+        kept[i] = calm / std::max(turned + calm, kLeastDensity);
     }
 }
 

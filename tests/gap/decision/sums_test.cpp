@@ -1,8 +1,10 @@
 // What sums of a drive say of pushes and of way lost in some rows, on toy drives there and back.
 
+#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/pushes.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/study.h"
+#include "gap/fit_test/wander.h"
 #include "gap/residual_model/free_form.h"
 #include "tests/gap/decision/toy_drives.h"
 
@@ -61,7 +63,7 @@ TEST_CASE("pushes by chance keep to nothing, those before a reversal do", "[gap]
         return;
     }
     REQUIRE(pattern.has_value());
-    CHECK(pattern->where.starts_with("time since cmd"));
+    CHECK_THAT(pattern->where, Catch::Contains("cmd"));
     CHECK(pattern->expected < 0.2 * pattern->pushes);
 }
 
@@ -128,6 +130,22 @@ TEST_CASE("how often a robot is pushed is known as well as so few pushes can say
         const double known = (interval.high - interval.low) / 2 / value * std::sqrt(pushes) / 1.645;
         CHECK(known > 0.6);
         CHECK(known < 2.0);
+    }
+}
+
+TEST_CASE("where pushes turn the robot its way goes on as it was turned: no sum wanders for sure",
+          "[gap][pushes]") {
+    const Experiment experiment = toy_drives([&](RandomStream& random, int, int, double) {
+        const bool now = random.uniform() < 0.02;
+        return Made{1.0, now ? 0.02 : 0.0, any_way(random), now ? 0.1 * random.normal() : 0.0};
+    });
+    const Study study(experiment, 1, 1, MotionView::Room);
+    const auto nothing_named = wandering(study, study.fit_none());
+    CHECK(std::any_of(nothing_named.begin(), nothing_named.end(),
+                      [](const Leftover& one) { return one.p_value < thresholds::kSureWalk; }));
+    for (const Leftover& left : wandering(study, fit_of_pushes(study))) {
+        INFO(left.observable << " " << left.shape << ", p " << left.p_value);
+        CHECK(left.p_value > thresholds::kSureWalk);
     }
 }
 

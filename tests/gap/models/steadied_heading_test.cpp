@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace puckloop;
@@ -38,7 +39,7 @@ Drive drive(double slope) {
 TEST_CASE("over a long span all that scatters about a run's mean is the tracker's", "[gap]") {
     const Drive still = drive(0.0);
     std::vector<double> errors;
-    heading_errors(still.above, still.time, 1e4, errors);
+    heading_errors(still.above, still.time, 1e4, {}, errors);
     double mean = 0.0;
     for (const double above : still.above)
         mean += above / 400;
@@ -49,7 +50,7 @@ TEST_CASE("over a long span all that scatters about a run's mean is the tracker'
 TEST_CASE("over a short span nothing is", "[gap]") {
     const Drive still = drive(0.0);
     std::vector<double> errors;
-    heading_errors(still.above, still.time, 1e-2, errors);
+    heading_errors(still.above, still.time, 1e-2, {}, errors);
     CHECK(rms(errors) < 1e-4);
 }
 
@@ -57,8 +58,36 @@ TEST_CASE("a robot that turns away from its wheels is followed over a middling s
           "[gap]") {
     const Drive turning = drive(0.05);
     std::vector<double> near, far;
-    heading_errors(turning.above, turning.time, 0.5, near);
-    heading_errors(turning.above, turning.time, 1e3, far);
+    heading_errors(turning.above, turning.time, 0.5, {}, near);
+    heading_errors(turning.above, turning.time, 1e3, {}, far);
     CHECK(rms(near) == Approx(0.01).epsilon(0.25));
     CHECK(rms(far) > 0.3);
+}
+
+TEST_CASE("a robot that is turned at once is followed from there on, and no further back", "[gap]") {
+    Drive turned = drive(0.0);
+    constexpr std::size_t kRow = 120;
+    for (std::size_t i = kRow; i < turned.above.size(); ++i)
+        turned.above[i] += 0.2;
+    const std::vector<double> chance(turned.above.size(), 0.01), turn(turned.above.size(), 0.1);
+    std::vector<double> kept, errors;
+    kept_headings(turned.above, chance, turn, kept);
+    CHECK(kept[kRow] < 1e-6);
+    CHECK(std::ranges::count_if(kept, [](double one) { return one < 0.9; }) == 1);
+    heading_errors(turned.above, turned.time, 1e3, kept, errors);
+    CHECK(rms(errors) == Approx(0.01).epsilon(0.1));
+    heading_errors(turned.above, turned.time, 1e3, {}, errors);
+    CHECK(rms(errors) > 0.08);
+}
+
+TEST_CASE("no heading is lost where nothing turned", "[gap]") {
+    const Drive still = drive(0.0);
+    std::vector<double> kept;
+    kept_headings(still.above, std::vector(400, 0.0), std::vector(400, 0.1), kept);
+    CHECK(std::ranges::all_of(kept, [](double one) { return one == 1.0; }));
+    const std::vector<double> constant(400, 0.3);
+    kept_headings(constant, std::vector(400, 0.01), std::vector(400, 0.1), kept);
+    CHECK(std::ranges::all_of(kept, [](double one) { return one > 0.99; }));
+    kept_headings({}, {}, {}, kept);
+    CHECK(kept.empty());
 }
