@@ -40,6 +40,7 @@ struct Observable {
     std::vector<double> turn;  ///< Level: by how much the axes that are summed along turn in this row, rad
     std::vector<double> jolt;  ///< Level: variance that the sum gains for sure, observable's unit squared
     bool steady = false;       ///< Level: nothing that the simulator knows adds errors up
+    bool waits = false;        ///< errors are waits, to one side, about a zero that is free in each run
     double fixed_sd = 0.0;  ///< > 0: the noise is this and is not fitted (whole steps of an emulated counter)
     double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
     /// Errors of all rows that what the simulator draws once a run may make: some draws; empty: it draws

@@ -79,6 +79,7 @@ class TimingModel final : public ModelOf<Numbers> {
         observables_.back().name = "arrival";
         // Against the robot's clock each arrival errs by itself; without one the periods' errors add up.
         observables_.back().noise = clocks_ ? NoiseKind::Carry : NoiseKind::Level;
+        observables_.back().waits = true;
         set_up(observables_.back(), experiment);
         // Against a rounded clock an arrival is as good as both clocks are.
         double& quantum = observables_.back().instrument.quantum;
