@@ -86,6 +86,15 @@ double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
     return std::max(gained_by_shape(forms), most_by_structure(structures));
 }
 
+/// Nats that the walk gains of which the diagnosis is surest.
+double left_by_walk(const Diagnosis& diagnosis) {
+    double most = 0.0;
+    for (const Leftover& one : diagnosis.leftovers)
+        if (one.covariate == kWanderCovariate && one.p_value < thresholds::kSureWalk)
+            most = std::max(most, -std::log(one.p_value));
+    return most;
+}
+
 /// Notes what is left for sure.
 void take_structure(const Diagnosis& diagnosis, Grounds& g) {
     const auto clear = [](const FreeForm& form) { return form.clear; };
@@ -142,6 +151,7 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.left_by_run = diagnosis.by_runs.by_run;
     g.left_by_structure = most_by_structure(diagnosis.structures);
     g.sums = any_adds_up(study);
+    g.left_by_walk = left_by_walk(diagnosis);
     g.left_of_readings = left_of_readings(study, diagnosis);
     take_structure(diagnosis, g);
     return g;
