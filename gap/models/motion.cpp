@@ -393,7 +393,7 @@ class MotionModel final : public ModelOf<Numbers> {
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (robot.axle_length * robot.axle_length);
             }
-            if (values.push.rate > 0) {
+            if (values.push.rate > 0 && motors.settled[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(values.push.rate * span, 0.5);
                     out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;

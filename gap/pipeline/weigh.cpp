@@ -86,12 +86,19 @@ double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
     return std::max(gained_by_shape(forms), most_by_structure(structures));
 }
 
-/// Nats that the walk gains of which the diagnosis is surest.
-double left_by_walk(const Diagnosis& diagnosis) {
+/// Of a sum that wanders for sure: what its walk gains beside the causes, over all that it and they gain
+/// where nothing may wander (of the walk without causes they leave that). The largest of any sum.
+double share_of_walk(const Study& study, const Selection& selection, const Diagnosis& diagnosis) {
+    const auto sure = [](const WalkBeside& one) { return one.p_value < thresholds::kSureWalk; };
     double most = 0.0;
-    for (const Leftover& one : diagnosis.leftovers)
-        if (one.covariate == kWanderCovariate && one.p_value < thresholds::kSureWalk)
-            most = std::max(most, -std::log(one.p_value));
+    if (selection.steps.empty() || std::ranges::none_of(diagnosis.walks, sure)) return most;
+    const auto alone = walks_beside(study, selection.none);
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+        const auto& [observable, beside, p] = diagnosis.walks[k];
+        const double gained = study.gain(selection.held_none, selection.held_chosen, observable).sum,
+                     all = gained + std::max(alone[k].gain.sum, 0.0);
+        if (sure(diagnosis.walks[k])) most = std::max(most, beside.sum / std::max(all, beside.sum));
+    }
     return most;
 }
 
@@ -151,7 +158,7 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.left_by_run = diagnosis.by_runs.by_run;
     g.left_by_structure = most_by_structure(diagnosis.structures);
     g.sums = any_adds_up(study);
-    g.left_by_walk = left_by_walk(diagnosis);
+    g.share_of_walk = share_of_walk(study, selection, diagnosis);
     g.left_of_readings = left_of_readings(study, diagnosis);
     take_structure(diagnosis, g);
     return g;
