@@ -18,7 +18,7 @@ class Channel {
     const RabErrorCount& count() const { return count_; }
 
     void receive(std::string_view chips) {
-        const RabReading reading = decode_rab(chips, size_);
+        const RabFrameReading reading = decode_rab(chips, size_);
         switch (reading.fault) {
         case RabFault::Preamble:
             ++count_.preamble;

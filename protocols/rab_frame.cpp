@@ -65,10 +65,10 @@ std::string_view name_of(RabFault fault) {
     return kNames.at(static_cast<std::size_t>(fault));
 }
 
-RabReading decode_rab(std::string_view chips, int size, std::string_view origin) {
+RabFrameReading decode_rab(std::string_view chips, int size, std::string_view origin) {
     if (size != 0) require_size(size);
     require_chips(chips, origin);
-    RabReading reading;
+    RabFrameReading reading;
     reading.size = size != 0 ? size : size_by_length(chips.size());
     reading.chips = static_cast<int>(chips.size());
     const auto wrong = [&](RabFault fault, int chip) {
@@ -98,7 +98,7 @@ RabReading decode_rab(std::string_view chips, int size, std::string_view origin)
     return reading;
 }
 
-std::string explain(const RabReading& r) {
+std::string explain(const RabFrameReading& r) {
     switch (r.fault) {
     case RabFault::None:
         break;

@@ -56,7 +56,8 @@ enum class RabFault {
 /// "none", "preamble", "manchester", "length", "check".
 std::string_view name_of(RabFault fault);
 
-struct RabReading {
+/// What one frame holds, or what is wrong with it.
+struct RabFrameReading {
     RabFault fault = RabFault::None;
     int chip = 0;               ///< with a fault: the first chip of the wrong part, counted from 0
     int size = 0;               ///< payload bits as asked for, or by the length; 0: no frame has this length
@@ -68,9 +69,9 @@ struct RabReading {
 
 /// Reads one frame; `size` 0 goes by the length. Throws InputError, naming `origin` and the chip: nothing to
 /// read, a character other than 0 and 1, no such size.
-RabReading decode_rab(std::string_view chips, int size = 0, std::string_view origin = {});
+RabFrameReading decode_rab(std::string_view chips, int size = 0, std::string_view origin = {});
 
 /// The fault in words with its chips, e.g. "manchester: chips 12 and 13 are equal"; "ok" without one.
-std::string explain(const RabReading& reading);
+std::string explain(const RabFrameReading& reading);
 
 }  // namespace puckloop::protocols

@@ -63,7 +63,7 @@ std::size_t FrameWatch::frame_at(std::size_t first, EmittedFrame& frame) const {
             std::string text(length, '0');
             for (std::size_t k = 0; k < length && first + k < chips_.size(); ++k)
                 if (((chips_[first + k] >> i) & 1u) != 0) text[k] = '1';
-            const protocols::RabReading reading = protocols::decode_rab(text, size);
+            const protocols::RabFrameReading reading = protocols::decode_rab(text, size);
             good = reading.ok();
             frame.payloads[reading.payload] |= static_cast<std::uint16_t>(1u << i);
         }

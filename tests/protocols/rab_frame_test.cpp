@@ -40,7 +40,7 @@ bool returns_unchanged(int size, std::uint32_t payload) {
     const std::string chips = encode_rab(size, payload);
     if (static_cast<int>(chips.size()) != rab_frame_chips(size)) return false;
     for (const int asked : {0, size}) {
-        const RabReading reading = decode_rab(chips, asked);
+        const RabFrameReading reading = decode_rab(chips, asked);
         if (!reading.ok() || reading.size != size || reading.payload != payload) return false;
         if ((std::popcount(payload) + reading.check) % 16 != 0) return false;
     }
@@ -55,7 +55,7 @@ TEST_CASE("frames are the waveforms measured at the board's emitters") {
         CHECK(encode_rab(vector.size, vector.payload) == vector.chips);
         CHECK(rab_check(vector.payload) == vector.check);
         CHECK(std::popcount(vector.payload) == vector.ones);
-        const RabReading reading = decode_rab(vector.chips);
+        const RabFrameReading reading = decode_rab(vector.chips);
         CHECK(reading.ok());
         CHECK(reading.size == vector.size);
         CHECK(reading.payload == vector.payload);
@@ -89,7 +89,7 @@ TEST_CASE("of the 2^12 well-formed 8-bit frames one a payload passes its check")
         std::string chips = "111111";
         for (int bit = 0; bit < 12; ++bit)
             chips += bits >> bit & 1u ? "10" : "01";
-        const RabReading reading = decode_rab(chips);
+        const RabFrameReading reading = decode_rab(chips);
         CHECK(reading.payload == (bits & 0xFF));
         accepted += reading.ok() ? 1 : 0;
         refused += reading.fault == RabFault::Check ? 1 : 0;

@@ -24,7 +24,7 @@ std::string firmware(const char* file) {
 }
 
 /// A robot's report of an exchange that took `total` ms, its last line at `ended`.
-void report(std::vector<Line>& lines, double ended, int total) {
+void report(std::vector<RobotLine>& lines, double ended, int total) {
     lines.push_back({ended - 0.03, "named e-puck_1234 in 2400 ms"});
     lines.push_back({ended - 0.02, "linked in 9800 ms"});
     lines.push_back({ended - 0.01, "answered"});
@@ -35,7 +35,7 @@ void report(std::vector<Line>& lines, double ended, int total) {
 }  // namespace
 
 TEST_CASE("exchanges are read from what a robot reports, whole and failed ones", "[bluetooth]") {
-    std::vector<Line> lines{{1.0, "walks"}, {1.5, "linked in ms"}, {1.6, "exchange x ms"}};
+    std::vector<RobotLine> lines{{1.0, "walks"}, {1.5, "linked in ms"}, {1.6, "exchange x ms"}};
     report(lines, 21.0, 20100);
     lines.push_back({30.0, "nobody found"});
     lines.push_back({40.0, "named e-puck_7 in 1 ms"});
@@ -99,13 +99,13 @@ TEST_CASE("mean, deviation, quantiles and interval are those of the values", "[b
 }
 
 TEST_CASE("the walk's time leaves the radio's pauses out", "[bluetooth]") {
-    std::vector<Line> lines{{2.0, "walks"}, {5.0, "hears 80"}};
+    std::vector<RobotLine> lines{{2.0, "walks"}, {5.0, "hears 80"}};
     report(lines, 25.0, 20000);
     lines.push_back({25.0, "walks"});
     lines.push_back({31.0, "hears 61"});
     lines.push_back({37.4, "nobody found"});
     lines.push_back({37.4, "walks"});
-    const std::vector<Line> twice = lines;
+    const std::vector<RobotLine> twice = lines;
     lines.push_back({90.0, "hears 99"});
     const EarsRadio ears = read_walk(lines, 20.0, 100.0);
     REQUIRE(ears.attempts.size() == 2);

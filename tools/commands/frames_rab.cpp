@@ -74,7 +74,7 @@ void encode(const Arguments& arguments) {
     });
 }
 
-std::string json_of(const RabReading& reading) {
+std::string json_of(const RabFrameReading& reading) {
     ordered_json line = {{"ok", reading.ok()}};
     if (reading.ok() || reading.fault == RabFault::Check)
         line.update(fields_of(reading.size, reading.payload, reading.check));
@@ -91,7 +91,7 @@ void read(const Arguments& arguments, int& status, bool fields) {
     const int size = size_of(arguments.size, 0);
     status = 0;
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
-        const RabReading reading = decode_rab(text, size, origin);
+        const RabFrameReading reading = decode_rab(text, size, origin);
         if (!reading.ok()) status = 1;
         if (arguments.json)
             std::cout << json_of(reading) << '\n';

@@ -22,12 +22,12 @@ constexpr int kCaller = 1234, kWalker = 1;
 
 }  // namespace
 
-EarsRadio read_walk(const std::vector<Line>& lines, double walk_s, double end) {
+EarsRadio read_walk(const std::vector<RobotLine>& lines, double walk_s, double end) {
     EarsRadio ears;
     double began = -1.0;  // the stretch of the walk
-    std::vector<Line> exchange;
+    std::vector<RobotLine> exchange;
     RadioAttempt attempt;
-    for (const Line& line : lines) {
+    for (const RobotLine& line : lines) {
         exchange.push_back(line);
         if (line.text.starts_with("hears ") && began >= 0) {
             const double walked = ears.walked + line.seconds - began;
@@ -70,7 +70,7 @@ EarsRadio ears_with_radio(const SoundOptions& options) {
                    {"E", options.walker, -kCorner, -kCorner, 0.0, 1, {}, kWalker}};
     const Trial run = run_trial(spec);
     if (std::none_of(run.lines.at(1).begin(), run.lines.at(1).end(),
-                     [](const Line& line) { return line.text == "walks"; }))
+                     [](const RobotLine& line) { return line.text == "walks"; }))
         throw RunError(
             "the walker did not report on UART2 that it walks: the image must do as firmware/ears");
     EarsRadio ears = read_walk(run.lines.at(1), options.walk_s, spec.seconds);
@@ -85,7 +85,7 @@ EarsRadio ears_with_radio(const SoundOptions& options) {
                             std::hypot(point.x - ears.path.back().x, point.y - ears.path.back().y) < kStands;
         if (!stands) ears.path.push_back(point);
     }
-    for (const Line& line : run.lines.at(0))
+    for (const RobotLine& line : run.lines.at(0))
         if (line.text == "heard I hear you" && line.seconds <= ears.lasted) ++ears.messages;
     return ears;
 }

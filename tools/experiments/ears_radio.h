@@ -32,7 +32,7 @@ struct EarsRadio {
 
 /// What the walker wrote within `end` seconds: "walks", "hears 132", then of the exchange. Attempts that
 /// begin within `walk_s` seconds of walking and have ended; their places are not known here.
-EarsRadio read_walk(const std::vector<Line>& lines, double walk_s, double end);
+EarsRadio read_walk(const std::vector<RobotLine>& lines, double walk_s, double end);
 
 /// With `options.walker` (firmware/ears) on both robots; `options.walk_s` is the walk's time.
 EarsRadio ears_with_radio(const SoundOptions& options);

@@ -21,7 +21,7 @@ std::optional<double> time_of(const std::string& line, std::string_view what) {
 
 }  // namespace
 
-std::vector<ReportedExchange> read_exchanges(const std::vector<Line>& lines) {
+std::vector<ReportedExchange> read_exchanges(const std::vector<RobotLine>& lines) {
     std::vector<ReportedExchange> exchanges;
     ReportedExchange open;
     const auto close = [&](double seconds) {
@@ -29,7 +29,7 @@ std::vector<ReportedExchange> read_exchanges(const std::vector<Line>& lines) {
         exchanges.push_back(open);
         open = {};
     };
-    for (const Line& line : lines) {
+    for (const RobotLine& line : lines) {
         if (const auto name = time_of(line.text, "named ")) open.name = name;
         if (const auto link = time_of(line.text, "linked in ")) open.link = link;
         if (const auto release = time_of(line.text, "released in ")) open.release = release;

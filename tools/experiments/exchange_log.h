@@ -21,6 +21,6 @@ struct ReportedExchange {
 };
 
 /// Those that have ended, in order; other lines are passed over.
-std::vector<ReportedExchange> read_exchanges(const std::vector<Line>& lines);
+std::vector<ReportedExchange> read_exchanges(const std::vector<RobotLine>& lines);
 
 }  // namespace puckloop::tools

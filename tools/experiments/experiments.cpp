@@ -38,7 +38,7 @@ void ask(TrialRobot& robot, double from, double until, double every) {
 /// The answers of robot `index`, with the time of each.
 std::vector<Volumes> answers(const Trial& trial, std::size_t index) {
     std::vector<Volumes> found;
-    for (const Line& line : trial.lines.at(index)) {
+    for (const RobotLine& line : trial.lines.at(index)) {
         Volumes volumes;
         volumes.at = line.seconds;
         if (parse_volumes(line.text, volumes)) found.push_back(volumes);
@@ -128,7 +128,7 @@ Ears ears_and_radio(const SoundOptions& options, const TrialProgress& progress) 
     TrialRobot walker{"E", options.walker, -kCorner, -kCorner, 0.0, 2};
     spec.robots = {caller, walker};
     const Trial run = run_trial(spec);
-    for (const Line& line : run.lines.at(1)) {
+    for (const RobotLine& line : run.lines.at(1)) {
         const auto where = run.at(1, line.seconds);
         ears.heard.push_back({line.seconds, where.x, where.y});
     }

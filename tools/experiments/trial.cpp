@@ -66,9 +66,9 @@ std::string_view field(std::string_view& line) {
 }
 
 /// Puts the characters of each robot's UART together to lines.
-std::vector<std::vector<Line>> read_lines(const fs::path& trace, const std::vector<TrialRobot>& robots) {
-    std::vector<std::vector<Line>> lines(robots.size());
-    std::vector<Line> open(robots.size());
+std::vector<std::vector<RobotLine>> read_lines(const fs::path& trace, const std::vector<TrialRobot>& robots) {
+    std::vector<std::vector<RobotLine>> lines(robots.size());
+    std::vector<RobotLine> open(robots.size());
     std::vector<std::string> names;
     for (const TrialRobot& robot : robots)
         names.push_back(fmt::format("{}.{}", robot.name, uart_of(robot)));

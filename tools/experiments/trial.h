@@ -35,13 +35,13 @@ struct TrialSpec {
 };
 
 /// A line that a robot wrote, without its end, and when its first character was on the wire.
-struct Line {
+struct RobotLine {
     double seconds = 0.0;
     std::string text;
 };
 
 struct Trial {
-    std::vector<std::vector<Line>> lines;                ///< of each robot
+    std::vector<std::vector<RobotLine>> lines;           ///< of each robot
     std::vector<std::vector<physics::PathPoint>> paths;  ///< of each robot, 10 a second and more
 
     /// Where a robot was, between two points on a straight line.

@@ -66,7 +66,7 @@ void RabDecoder::close(const std::string& link, const std::string& from, Board& 
         // A last chip that is off is silence to whoever sees light only.
         std::string chips = done.chips;
         if (chips.size() % 2 != 0) chips += '0';
-        const protocols::RabReading reading = protocols::decode_rab(chips);
+        const protocols::RabFrameReading reading = protocols::decode_rab(chips);
         DecodedFrame frame{
             done.begin, done.begin + static_cast<Time>(chips.size()) * kChip, link, from, "rab", {}, {}};
         frame.fields = {{"emitters", who}, {"bits", reading.size}, {"chips", chips}};
