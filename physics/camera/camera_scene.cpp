@@ -97,9 +97,11 @@ CameraScene::CameraScene(const World& world)
         patches_.push_back(values_of(patch));
         seen_patches_.push_back(patch_from(patches_.back()));
     }
-    for (const Booth& booth : world.booths)
-        for (const ColouredLight& light : BoothModel(booth).lights())
+    for (const Booth& booth : world.booths) {
+        const BoothModel model(booth);  // which must outlive the loop over its lights
+        for (const ColouredLight& light : model.lights())
             booth_lights_.push_back({light.x, light.y, light.z, light.radius});
+    }
     for (const Lamp& lamp : world.lamps) {
         const double level = kLampLevel * lamp.intensity;
         lamps_.push_back({lamp.x, lamp.y, lamp.height, kLampRadius, {level, level, level}});
