@@ -420,9 +420,12 @@ class MotionModel final : public ModelOf<Numbers> {
         for (std::size_t i = 0; i < n; ++i)
             above[i] = observables_[2].y[first + i] - out[2].mean[first + i];
         kept.clear();
-        if (!out[2].lapse.empty())
-            kept_headings(above, std::span(out[2].lapse).subspan(first, n),
-                          std::span(out[2].lapse_scale).subspan(first, n), kept);
+        const auto rows = [&](const std::vector<double>& all) {
+            return all.empty() ? std::span<const double>() : std::span(all).subspan(first, n);
+        };
+        const Predicted& heading = out[2];
+        if (!heading.lapse.empty() || !heading.jolt.empty())
+            kept_headings(above, {rows(heading.lapse), rows(heading.lapse_scale), rows(heading.jolt)}, kept);
         heading_errors(above, path.time, span, kept, errors);
         double along = 0, across = 0;
         for (std::size_t i = 0; i < n; ++i) {

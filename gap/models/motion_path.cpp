@@ -145,8 +145,7 @@ void heading_errors(std::span<const double> above, std::span<const double> time,
     }
 }
 
-void kept_headings(std::span<const double> above, std::span<const double> chance,
-                   std::span<const double> turn, std::vector<double>& kept) {
+void kept_headings(std::span<const double> above, const Turned& turned, std::vector<double>& kept) {
     kept.assign(above.size(), 1.0);
     thread_local std::vector<double> sizes;
     sizes.clear();
@@ -157,10 +156,14 @@ void kept_headings(std::span<const double> above, std::span<const double> chance
     std::ranges::nth_element(sizes, middle);
     const double sd = std::max(kSdOfMiddle * *middle, kLeastTurn);
     for (std::size_t i = 1; i < above.size(); ++i) {
-        const double off = (above[i] - above[i - 1]) / sd, wide = std::hypot(turn[i] / sd, 1.0);
-        const double turned = chance[i] / wide * std::exp(-off * off / (2 * wide * wide)),
-                     calm = (1 - chance[i]) * std::exp(-off * off / 2);
-        kept[i] = calm / std::max(turned + calm, kLeastDensity);
+        // A walk of q a row under noise of r is best followed by what fades by sqrt(q / r) a row, where that
+        // is little (the steady Kalman gain); a step has twice the noise of a heading.
+        if (!turned.variance.empty()) kept[i] = std::exp(-std::sqrt(2 * turned.variance[i]) / sd);
+        if (turned.chance.empty()) continue;
+        const double off = (above[i] - above[i - 1]) / sd, wide = std::hypot(turned.turn[i] / sd, 1.0);
+        const double pushed = turned.chance[i] / wide * std::exp(-off * off / (2 * wide * wide)),
+                     calm = (1 - turned.chance[i]) * std::exp(-off * off / 2);
+        kept[i] *= calm / std::max(pushed + calm, kLeastDensity);
     }
 }
 

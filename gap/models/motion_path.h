@@ -63,15 +63,20 @@ Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double 
 ///
 /// Errors of measured headings. `above`: measured minus predicted, rad, a row each; `time`: s, ascending.
 /// What `above` keeps for longer than `span` seconds is taken for the robot's own, the rest for the
-/// tracker's. Over a row that turned the robot by itself (`kept`: how likely it did not; empty: no row did)
-/// no more is kept. Deviation: an average weighted by exp(-distance / span), not a smoother that knows the
+/// tracker's. Over a row that turned the robot by itself (`kept`: below 1; empty: no row did) no more is
+/// kept. Deviation: an average weighted by exp(-distance / span), not a smoother that knows the
 /// tails.
 void heading_errors(std::span<const double> above, std::span<const double> time, double span,
                     std::span<const double> kept, std::vector<double>& errors);
 
-/// How likely each row did not turn the robot by more than its wheels did. `chance` that it did, by `turn`
-/// (rad, standard deviation), a row each; the tracker's noise is taken from the middle of the steps of `above`.
-void kept_headings(std::span<const double> above, std::span<const double> chance,
-                   std::span<const double> turn, std::vector<double>& kept);
+/// What turns a robot beside its wheels, a row each: by `turn` (rad, standard deviation) with some chance,
+/// and by a variance (rad squared) for sure. Empty: nothing does.
+struct Turned {
+    std::span<const double> chance, turn, variance;
+};
+
+/// How much of what was known of the heading each row leaves: all that is not turned, at most. The tracker's
+/// noise is taken from the middle of the steps of `above`.
+void kept_headings(std::span<const double> above, const Turned& turned, std::vector<double>& kept);
 
 }  // namespace puckloop::gap

@@ -71,9 +71,9 @@ TEST_CASE("a robot that is turned at once is followed from there on, and no furt
         turned.above[i] += 0.2;
     const std::vector<double> chance(turned.above.size(), 0.01), turn(turned.above.size(), 0.1);
     std::vector<double> kept, errors;
-    kept_headings(turned.above, chance, turn, kept);
+    kept_headings(turned.above, {chance, turn, {}}, kept);
     CHECK(kept[kRow] < 1e-6);
-    CHECK(std::ranges::count_if(kept, [](double one) { return one < 0.9; }) == 1);
+    CHECK(std::ranges::count_if(kept, [](double one) { return one < 0.5; }) == 1);
     heading_errors(turned.above, turned.time, 1e3, kept, errors);
     CHECK(rms(errors) == Approx(0.01).epsilon(0.1));
     heading_errors(turned.above, turned.time, 1e3, {}, errors);
@@ -83,11 +83,28 @@ TEST_CASE("a robot that is turned at once is followed from there on, and no furt
 TEST_CASE("no heading is lost where nothing turned", "[gap]") {
     const Drive still = drive(0.0);
     std::vector<double> kept;
-    kept_headings(still.above, std::vector(400, 0.0), std::vector(400, 0.1), kept);
+    const std::vector<double> turn(400, 0.1);
+    kept_headings(still.above, {std::vector(400, 0.0), turn, std::vector(400, 0.0)}, kept);
     CHECK(std::ranges::all_of(kept, [](double one) { return one == 1.0; }));
     const std::vector<double> constant(400, 0.3);
-    kept_headings(constant, std::vector(400, 0.01), std::vector(400, 0.1), kept);
+    kept_headings(constant, {std::vector(400, 0.01), turn, {}}, kept);
     CHECK(std::ranges::all_of(kept, [](double one) { return one > 0.99; }));
-    kept_headings({}, {}, {}, kept);
+    kept_headings({}, {}, kept);
     CHECK(kept.empty());
+}
+
+TEST_CASE("a heading that gains a variance in some rows is followed there", "[gap]") {
+    Drive walking = drive(0.0);
+    std::vector<double> variance(walking.above.size(), 0.0), kept, errors;
+    RandomStream random(9, "test/steadied heading/walk");
+    double off = 0.0;
+    for (std::size_t i = 0; i < walking.above.size(); ++i) {
+        if (i % 40 == 0) variance[i] = 0.05 * 0.05, off += 0.05 * random.normal();
+        walking.above[i] += off;
+    }
+    kept_headings(walking.above, {{}, {}, variance}, kept);
+    CHECK(kept[39] == 1.0);
+    CHECK(kept[40] < 0.01);
+    heading_errors(walking.above, walking.time, 1e3, kept, errors);
+    CHECK(rms(errors) == Approx(0.01).epsilon(0.1));
 }
