@@ -15,7 +15,6 @@ std::span<const Rule> rules() {
          [](Grounds& g) { g.left_by_shape = g.left_of_readings = 0.0; }},
         {"share left: readings beside sums", [](Grounds& g) { g.left_of_readings = 0.0; }},
         {"share left: structures", [](Grounds& g) { g.left_by_structure = 0.0; }},
-        {"share left: sums that wander", [](Grounds& g) { g.share_of_walk = 0.0; }},
         {"share left: bent forms", [](Grounds& g) { g.left_by_form = 0.0; }},
         {"share left: numbers of runs", [](Grounds& g) { g.left_by_run = 0.0; }},
         {"stopped at the end of its range", [](Grounds& g) { g.stopped_at_end = false; }},

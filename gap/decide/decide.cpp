@@ -40,8 +40,7 @@ std::vector<std::string> objections(const Grounds& g) {
             fmt::format("{} was assumed, not measured, and an error of it may look the same", g.assumed));
     // 3. Goodness of fit. What is left must be a small part of what was wrong.
     const double most = g.sums ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
-    against(g.unexplained() > most || g.share_of_walk > most ||
-                share_of(g.left_of_readings, g.gain.sum) > thresholds::kShareLeft,
+    against(g.unexplained() > most || share_of(g.left_of_readings, g.gain.sum) > thresholds::kShareLeft,
             "leaves too much to be the cause");
     against(g.stopped_at_end && g.structure && !g.only_wanders,
             "stopped at the end of its plausible range and leaves something");

@@ -26,7 +26,6 @@ struct Grounds {
     double left_by_form = 0.0;       ///< of a cause's form, bent
     double left_by_run = 0.0;        ///< of a number for each run
     double left_by_structure = 0.0;  ///< that the surest structure left may stand for
-    double share_of_walk = 0.0;      ///< of a sum that wanders: of all gained where nothing may, by the walk
     double left_of_readings = 0.0;   ///< by shape or structure, of observables that do not add up
     bool sums = false;               ///< some observable adds up
     bool structure = false;          ///< something is left for sure

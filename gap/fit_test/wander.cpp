@@ -40,10 +40,10 @@ bool is_clear(const Gain& gain) {
 
 }  // namespace
 
-std::vector<WalkBeside> walks_beside(const Study& study, const Fit& fit) {
+std::vector<Leftover> wandering(const Study& study, const Fit& fit) {
     const auto& observables = study.model().observables();
     const auto steady = std::ranges::count_if(observables, [](const Observable& one) { return one.steady; });
-    std::vector<WalkBeside> all;
+    std::vector<Leftover> all;
     if (steady == 0) return all;
     // How much sums may wander is learnt from the other runs, too: else it would have seen what it predicts.
     const HeldOut held = study.hold_out(fit, kAgain), calm = study.hold_out(calmed(study, fit), kCalmAgain);
@@ -52,20 +52,11 @@ std::vector<WalkBeside> walks_beside(const Study& study, const Fit& fit) {
         const Gain gain = study.gain(calm, held, o);
         const double p = std::clamp(static_cast<double>(steady) * std::exp(-gain.sum),
                                     std::numeric_limits<double>::min(), 1.0);
-        all.push_back({o, gain, is_clear(gain) ? p : 1.0});
-    }
-    return all;
-}
-
-std::vector<Leftover> wandering(const Study& study, const Fit& fit, const std::vector<WalkBeside>& walks) {
-    std::vector<Leftover> all;
-    for (const WalkBeside& one : walks) {
-        if (one.p_value >= thresholds::kReported) continue;
-        const Observable& observable = study.model().observables()[one.observable];
-        const NoiseParameters& noise = fit.fitted.state.noise[one.observable];
-        all.push_back({observable.name, kWanderCovariate, one.p_value,
+        if (p >= thresholds::kReported || !is_clear(gain)) continue;
+        const NoiseParameters& noise = fit.fitted.state.noise[o];
+        all.push_back({observables[o].name, kWanderCovariate, p,
                        fmt::format("wanders by {} a row beside what was measured",
-                                   quantity(std::exp(noise.log_sd + noise.carry / 2), observable.unit))});
+                                   quantity(std::exp(noise.log_sd + noise.carry / 2), observables[o].unit))});
     }
     return all;
 }

@@ -14,17 +14,8 @@ namespace puckloop::gap {
 
 inline constexpr const char* kWanderCovariate = "course of a run";
 
-/// What a walk of one steady observable gains on held-out runs over none.
-struct WalkBeside {
-    std::size_t observable = 0;
-    Gain gain;             ///< nats
-    double p_value = 1.0;  ///< corrected for how many steady ones there are
-};
-
-/// One each, in the model's order.
-std::vector<WalkBeside> walks_beside(const Study& study, const Fit& fit);
-
-/// Those worth reporting, in words.
-std::vector<Leftover> wandering(const Study& study, const Fit& fit, const std::vector<WalkBeside>& walks);
+/// Of each steady observable that wanders beside the fit: a structure, p corrected for how many there are.
+/// Only those worth reporting.
+std::vector<Leftover> wandering(const Study& study, const Fit& fit);
 
 }  // namespace puckloop::gap

@@ -3,6 +3,7 @@
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/leftovers.h"
 #include "gap/diagnostics/series.h"
+#include "gap/fit_test/wander.h"
 #include "gap/predictive/check.h"
 #include "gap/predictive/discrepancies.h"
 #include "gap/residual_model/free_form.h"
@@ -110,8 +111,7 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     }
     found.structures = found.leftovers;
     const Selection& selection = chosen.selection;
-    found.walks = walks_beside(study, selection.chosen);
-    for (const auto& more : {found.by_runs.structures, wandering(study, selection.chosen, found.walks)})
+    for (const auto& more : {found.by_runs.structures, wandering(study, selection.chosen)})
         found.leftovers.insert(found.leftovers.end(), more.begin(), more.end());
     std::ranges::stable_sort(found.leftovers, {}, &Leftover::p_value);
     return found;

@@ -3,7 +3,6 @@
 
 #include "gap/decide/roles.h"
 #include "gap/fit_test/rival_forms.h"
-#include "gap/fit_test/wander.h"
 #include "gap/pipeline/choose.h"
 #include "gap/verdict/verdict.h"
 
@@ -18,7 +17,6 @@ struct Diagnosis {
     std::vector<Leftover> structures;         ///< functions of columns, evenness, what no replicate shows
     std::vector<Leftover> leftovers;          ///< these and what differs by runs, jumps and
                                               ///< wanders; the surest first
-    std::vector<WalkBeside> walks;            ///< what walks of steady sums gain
     std::vector<FreeForm> free_forms;         ///< corrections without a mechanism
     std::vector<PredictiveCheck> predictive;  ///< of this fit; none where all adds up
     LeftByRuns by_runs;                       ///< numbers of runs, jumps inside runs

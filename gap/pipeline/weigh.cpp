@@ -86,22 +86,6 @@ double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
     return std::max(gained_by_shape(forms), most_by_structure(structures));
 }
 
-/// Of a sum that wanders for sure: what its walk gains beside the causes, over all that it and they gain
-/// where nothing may wander (of the walk without causes they leave that). The largest of any sum.
-double share_of_walk(const Study& study, const Selection& selection, const Diagnosis& diagnosis) {
-    const auto sure = [](const WalkBeside& one) { return one.p_value < thresholds::kSureWalk; };
-    double most = 0.0;
-    if (selection.steps.empty() || std::ranges::none_of(diagnosis.walks, sure)) return most;
-    const auto alone = walks_beside(study, selection.none);
-    for (std::size_t k = 0; k < alone.size(); ++k) {
-        const auto& [observable, beside, p] = diagnosis.walks[k];
-        const double gained = study.gain(selection.held_none, selection.held_chosen, observable).sum,
-                     all = gained + std::max(alone[k].gain.sum, 0.0);
-        if (sure(diagnosis.walks[k])) most = std::max(most, beside.sum / std::max(all, beside.sum));
-    }
-    return most;
-}
-
 /// Notes what is left for sure.
 void take_structure(const Diagnosis& diagnosis, Grounds& g) {
     const auto clear = [](const FreeForm& form) { return form.clear; };
@@ -158,7 +142,6 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.left_by_run = diagnosis.by_runs.by_run;
     g.left_by_structure = most_by_structure(diagnosis.structures);
     g.sums = any_adds_up(study);
-    g.share_of_walk = share_of_walk(study, selection, diagnosis);
     g.left_of_readings = left_of_readings(study, diagnosis);
     take_structure(diagnosis, g);
     return g;

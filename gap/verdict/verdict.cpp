@@ -134,7 +134,6 @@ Json grounds_json(const Grounds& g) {
             {"left_by_shape", g.left_by_shape},
             {"left_by_form", g.left_by_form},
             {"left_by_run", g.left_by_run},
-            {"share_of_walk", g.share_of_walk},
             {"left_of_readings", g.left_of_readings},
             {"sums", g.sums},
             {"structure", g.structure},

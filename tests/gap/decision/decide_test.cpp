@@ -67,7 +67,6 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
         [](Grounds& g) { g.sums = true, g.left_of_readings = g.left_by_shape = 40; },
         [](Grounds& g) { g.left_by_structure = 40; },
         [](Grounds& g) { g.left_by_run = 40; },
-        [](Grounds& g) { g.sums = true, g.share_of_walk = 0.6; },
         [](Grounds& g) { g.stopped_at_end = g.structure = true; },
         [](Grounds& g) { g.out_of_role = "gains by larger errors"; },
         [](Grounds& g) { g.not_confirmed = "leaves something"; },

@@ -141,11 +141,11 @@ TEST_CASE("where pushes turn the robot its way goes on as it was turned: no sum 
         return Made{1.0, now ? 0.02 : 0.0, any_way(random), now ? 0.1 * random.normal() : 0.0};
     });
     const Study study(experiment, 1, 1, MotionView::Room);
-    const auto nothing_named = walks_beside(study, study.fit_none());
+    const auto nothing_named = wandering(study, study.fit_none());
     CHECK(std::any_of(nothing_named.begin(), nothing_named.end(),
-                      [](const WalkBeside& one) { return one.p_value < thresholds::kSureWalk; }));
-    for (const WalkBeside& left : walks_beside(study, fit_of_pushes(study))) {
-        INFO("observable " << left.observable << ", " << left.gain.sum << " nats");
+                      [](const Leftover& one) { return one.p_value < thresholds::kSureWalk; }));
+    for (const Leftover& left : wandering(study, fit_of_pushes(study))) {
+        INFO(left.observable << " " << left.shape << ", p " << left.p_value);
         CHECK(left.p_value > thresholds::kSureWalk);
     }
 }

@@ -32,7 +32,7 @@ Experiment drives(double step, std::uint64_t seed, double carry = 0.0) {
 std::vector<Leftover> seen(const Experiment& experiment, MotionView view) {
     const Study study(experiment, 1, 1, view);
     const Fit none = study.fit_none();
-    return wandering(study, none, walks_beside(study, none));
+    return wandering(study, none);
 }
 
 }  // namespace
