@@ -30,9 +30,7 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     const auto touched = scattered_by(study, fit, scatter);
     if (touched.empty()) return "";
     const auto is_touched = [&](const std::string& name) { return stats::contains(touched, name); };
-    const auto sure = [&](const Leftover& left) {
-        return left.p_value < thresholds::kSure && is_touched(left.observable);
-    };
+    const auto sure = [&](const Leftover& left) { return is_sure(left) && is_touched(left.observable); };
     for (const Leftover& left : leftovers)
         if (left.covariate == kPlacementCovariate && sure(left))
             return "explains scatter that repeats at each placement";
@@ -54,10 +52,7 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     // Larger errors cover any mean that the model lacks: with one that is left for sure, who knows how much.
     // How much a walk is worth is known.
     const auto is_left = [&](const Leftover& left) {
-        return left.covariate == kWanderCovariate
-                   ? is_touched(left.observable) && left.p_value < thresholds::kSureWalk &&
-                         too_much(-std::log(left.p_value))
-                   : sure(left);
+        return sure(left) && (left.covariate != kWanderCovariate || too_much(-std::log(left.p_value)));
     };
     return std::ranges::any_of(leftovers, is_left) ? "explains scatter beside a structure that is left" : "";
 }
@@ -171,6 +166,10 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
     if (scatter.empty()) return {};
     const std::string why = mean_behind(study, fit, held, leftovers, scatter, seed);
     return why.empty() ? OutOfRole{} : OutOfRole{scatter, why};
+}
+
+bool is_sure(const Leftover& left) {
+    return left.p_value < (left.covariate == kWanderCovariate ? thresholds::kSureWalk : thresholds::kSure);
 }
 
 double gained_by_shape(const std::vector<FreeForm>& forms) {

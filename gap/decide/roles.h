@@ -30,6 +30,9 @@ bool within_rounding(const Study& study, const Fit& fit, std::size_t effect);
 OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
                       const std::vector<Leftover>& leftovers, std::uint64_t seed);
 
+/// Is a structure left for sure? A walk needs a smaller p value than others.
+bool is_sure(const Leftover& left);
+
 /// nats that corrections by functions of covariates gain, the clear ones.
 double gained_by_shape(const std::vector<FreeForm>& forms);
 

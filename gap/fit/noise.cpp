@@ -1,6 +1,7 @@
 #include "gap/fit/noise.h"
 
 #include "gap/decide/thresholds.h"
+#include "gap/stats/robust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +93,7 @@ NoiseParameters first_guess(const Observable& o, const Predicted& p) {
         double mean = 0.0;
         for (const double size : sizes)
             mean += size / static_cast<double>(sizes.size());
-        sd = std::max({1.4826 * *middle, 0.3 * mean, o.instrument.quantum / 4, 1e-9});
+        sd = std::max({stats::kMadToSigma * *middle, 0.3 * mean, o.instrument.quantum / 4, 1e-9});
     }
     guess.log_sd = std::log(sd);
     guess.log_tail = std::log(8.0);

@@ -16,7 +16,8 @@ struct RivalForm {
     Gain gain;         ///< of the effect's own form over this one, nats over blocks of runs
 };
 
-/// The forms that differ from the effect's own in these rows; none for an effect that moves no mean.
+/// The forms that differ from the effect's own in these rows; none for an effect that moves no mean
+/// by itself.
 std::vector<RivalForm> rival_forms(const Study& study, const Fit& fit, std::size_t effect);
 
 /// What they say of an effect.

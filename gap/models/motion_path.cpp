@@ -1,5 +1,7 @@
 #include "gap/models/motion_path.h"
 
+#include "gap/stats/robust.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +11,10 @@ namespace {
 
 constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
-constexpr double kLongestSlip = 0.7;    // s: no change of speed costs way for longer
-constexpr double kSameTime = 1e-6;      // s
-constexpr double kLeastChance = 1e-6;   // of losing a command again and again
-constexpr double kSdOfMiddle = 1.4826;  // standard deviation over the middle of absolute errors, normal law
-constexpr double kLeastTurn = 1e-9;     // rad: what rounding of numbers makes
+constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
+constexpr double kSameTime = 1e-6;     // s
+constexpr double kLeastChance = 1e-6;  // of losing a command again and again
+constexpr double kLeastTurn = 1e-9;    // rad: what rounding of numbers makes
 constexpr double kLeastDensity = 1e-300;
 
 void add_paces(const WheelCurve& curve, CurveReader& reader, double from, double to,
@@ -154,7 +155,7 @@ void kept_headings(std::span<const double> above, const Turned& turned, std::vec
     if (sizes.empty()) return;
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::ranges::nth_element(sizes, middle);
-    const double sd = std::max(kSdOfMiddle * *middle, kLeastTurn);
+    const double sd = std::max(stats::kMadToSigma * *middle, kLeastTurn);
     for (std::size_t i = 1; i < above.size(); ++i) {
         // A walk of q a row under noise of r is best followed by what fades by sqrt(q / r) a row, where that
         // is little (the steady Kalman gain); a step has twice the noise of a heading.

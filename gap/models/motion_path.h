@@ -64,8 +64,7 @@ Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double 
 /// Errors of measured headings. `above`: measured minus predicted, rad, a row each; `time`: s, ascending.
 /// What `above` keeps for longer than `span` seconds is taken for the robot's own, the rest for the
 /// tracker's. Over a row that turned the robot by itself (`kept`: below 1; empty: no row did) no more is
-/// kept. Deviation: an average weighted by exp(-distance / span), not a smoother that knows the
-/// tails.
+/// kept. Deviation: an average weighted by exp(-distance / span), not a smoother that knows the tails.
 void heading_errors(std::span<const double> above, std::span<const double> time, double span,
                     std::span<const double> kept, std::vector<double>& errors);
 

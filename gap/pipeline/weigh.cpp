@@ -89,13 +89,10 @@ double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
 /// Notes what is left for sure.
 void take_structure(const Diagnosis& diagnosis, Grounds& g) {
     const auto clear = [](const FreeForm& form) { return form.clear; };
-    const auto sure = [](const Leftover& one) {
-        return one.p_value < (one.covariate == kWanderCovariate ? thresholds::kSureWalk : thresholds::kSure);
-    };
-    const auto other = [&](const Leftover& one) { return sure(one) && one.covariate != kWanderCovariate; };
+    const auto other = [&](const Leftover& one) { return is_sure(one) && one.covariate != kWanderCovariate; };
     const auto& left = diagnosis.leftovers;
     const bool shaped = std::ranges::any_of(diagnosis.free_forms, clear) || std::ranges::any_of(left, other);
-    g.structure = shaped || std::ranges::any_of(left, sure);
+    g.structure = shaped || std::ranges::any_of(left, is_sure);
     g.only_wanders = g.structure && !shaped;
 }
 

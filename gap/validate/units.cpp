@@ -27,9 +27,9 @@ struct Usual {
     double low, high;
 };
 
-/// Range and bearing: heard to 0.8 m, in
-/// published sets to 6 m; frames of 4.5 and 9.2 ms. An edge of a printed floor under a spot of millimetres:
-/// up to some 1000 / m. The e-puck drives 0.13 m/s, weighs 0.2 kg and has one cell of 3.4 to 4.2 V.
+/// Range and bearing: heard to 0.8 m, in published sets to 6 m; frames of 4.5 and 9.2 ms. An edge of a
+/// printed floor under a spot of millimetres: up to some 1000 / m. The e-puck drives 0.13 m/s, weighs 0.2 kg
+/// and has one cell of 3.4 to 4.2 V.
 constexpr Usual kUsual[] = {
     {Kind::Proximity, "distance_m", 2e-4, 1.0},   {Kind::Rab, "distance_m", 0.02, 10.0},
     {Kind::Rab, "frame_time", 3e-4, 0.1},         {Kind::Rab, "send_period", 1e-3, 100.0},
@@ -50,13 +50,18 @@ bool rare(std::string_view unit) {
     return names.contains(unit);
 }
 
+/// The unit that somebody stated for a column; "" where nobody did.
+std::string_view stated_unit(const Experiment& experiment, std::string_view column) {
+    const auto place = experiment.stated.find(column);
+    return place == experiment.stated.end() ? "" : std::string_view(place->second.unit);
+}
+
 /// Units other than taken in which an SI value, as the files' numbers made it, lies within low and high: the
 /// nearest to their middle first.
 std::vector<std::string_view> better_units(const Experiment& experiment, const ColumnInfo& info, double value,
                                            double low, double high) {
-    const auto place = experiment.stated.find(info.name);
-    const bool stated = place != experiment.stated.end() && !place->second.unit.empty();
-    const ToSi taken = unit_to_si(stated ? place->second.unit : info.unit, info.unit).value_or(ToSi{});
+    const std::string_view stated = stated_unit(experiment, info.name);
+    const ToSi taken = unit_to_si(stated.empty() ? info.unit : stated, info.unit).value_or(ToSi{});
     const auto in = [&](std::string_view unit) {
         const ToSi other = unit_to_si(unit, info.unit).value_or(ToSi{});
         return (value - taken.offset) / taken.factor * other.factor + other.offset;
@@ -186,18 +191,15 @@ double seen_from(double counts) {
     return distance;
 }
 
-bool stated(const Experiment& experiment, const char* column) {
-    const auto place = experiment.stated.find(column);
-    return place != experiment.stated.end() && !place->second.unit.empty();
-}
-
 /// A column against what another one, row by row, lets expect of it.
 template <class Expected>
 void follow(Experiment& experiment, const char* column, const char* other, const Expected& expected,
             double high = kFar) {
     constexpr double kOfPart = 0.5;  // correlation where the range is less
     // Of two columns at odds the one is asked whose unit somebody stated.
-    if (!experiment.has(column) || (stated(experiment, other) && !stated(experiment, column))) return;
+    if (!experiment.has(column) ||
+        (!stated_unit(experiment, other).empty() && stated_unit(experiment, column).empty()))
+        return;
     Pairs pairs;
     for (const Run& run : experiment.runs)
         for (std::size_t i = 0; i < run.rows; ++i)

@@ -5,9 +5,28 @@
 #include "gap/fit/fit.h"
 #include "gap/models/model.h"
 
+#include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap::test {
+
+/// Runs of so many rows each: `row_of(run, r, k)` writes row k of run r, in order.
+template <class RowOf>
+Experiment recorded(Kind kind, int runs, int rows, const RowOf& row_of) {
+    Experiment experiment;
+    experiment.kind = kind;
+    for (int r = 0; r < runs; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = static_cast<std::size_t>(rows);
+        for (int k = 0; k < rows; ++k)
+            row_of(run, r, k);
+        experiment.runs.push_back(std::move(run));
+    }
+    return experiment;
+}
 
 /// With the nominal numbers, in `before` and `after` alike.
 inline std::vector<Series> simulated(const Experiment& experiment) {

@@ -23,23 +23,15 @@ constexpr double kMillisecond = 1e-3;
 /// place.
 Experiment frames(std::uint64_t seed, double jitter, bool even) {
     RandomStream random(seed, "coarse steps/frames");
-    Experiment experiment;
-    experiment.kind = Kind::Timing;
-    for (int r = 0; r < 6; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        run.rows = 400;
-        const double begun = even ? 0.5073 : 0.5 + random.uniform();
-        for (int k = 0; k < 400; ++k) {
-            const double robot = 0.1 * k, host = robot + begun + jitter * random.normal();
-            run.columns["seq"].push_back(k);
-            run.columns["t_robot_s"].push_back(robot + (even ? 0.0 : 1e-5 * std::round(random.normal())));
-            run.columns["t_host_s"].push_back(std::round(host / kMillisecond) * kMillisecond);
-            run.columns["bytes"].push_back(84);
-        }
-        experiment.runs.push_back(std::move(run));
-    }
-    return experiment;
+    double begun = 0.5073;
+    return test::recorded(Kind::Timing, 6, 400, [&](Run& run, int, int k) {
+        if (k == 0 && !even) begun = 0.5 + random.uniform();
+        const double robot = 0.1 * k, host = robot + begun + jitter * random.normal();
+        run.columns["seq"].push_back(k);
+        run.columns["t_robot_s"].push_back(robot + (even ? 0.0 : 1e-5 * std::round(random.normal())));
+        run.columns["t_host_s"].push_back(std::round(host / kMillisecond) * kMillisecond);
+        run.columns["bytes"].push_back(84);
+    });
 }
 
 /// Eight sensors before a wall, in whole counts; noise of so many, and of such a share of the reading.

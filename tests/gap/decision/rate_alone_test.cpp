@@ -3,11 +3,11 @@
 #include "base/random.h"
 #include "gap/decide/rate_alone.h"
 #include "gap/pipeline/analyse.h"
+#include "tests/gap/simulated.h"
 
 #include <catch2/catch.hpp>
 
 #include <functional>
-#include <string>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -20,25 +20,10 @@ constexpr std::uint64_t kSeed = 20261127;
 /// `lost`: the chance that a row's message or frame is, by its run and row.
 using Lost = std::function<double(int run, int row)>;
 
-/// `row_of(run, r, k)` writes row k of run r.
-Experiment recorded(Kind kind, const std::function<void(Run&, int, int)>& row_of) {
-    Experiment experiment;
-    experiment.kind = kind;
-    for (int r = 0; r < kRuns; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        run.rows = kRows;
-        for (int k = 0; k < kRows; ++k)
-            row_of(run, r, k);
-        experiment.runs.push_back(std::move(run));
-    }
-    return experiment;
-}
-
 /// Messages from distances in turn.
 Experiment messages(std::uint64_t seed, const Lost& lost) {
     RandomStream random(seed, "rate alone test");
-    return recorded(Kind::Rab, [&](Run& run, int r, int k) {
+    return test::recorded(Kind::Rab, kRuns, kRows, [&](Run& run, int r, int k) {
         run.columns["t_s"].push_back(0.1 * k);
         run.columns["distance_m"].push_back(0.1 * (1 + k * 5 % 7));
         run.columns["received"].push_back(random.uniform() < lost(r, k) ? 0 : 1);
@@ -48,7 +33,7 @@ Experiment messages(std::uint64_t seed, const Lost& lost) {
 /// Frames of a loop that arrive on time.
 Experiment frames(std::uint64_t seed, const Lost& lost) {
     RandomStream random(seed, "rate alone test");
-    return recorded(Kind::Timing, [&](Run& run, int r, int k) {
+    return test::recorded(Kind::Timing, kRuns, kRows, [&](Run& run, int r, int k) {
         const double robot = 0.1 * k + 1e-5 * random.normal();
         run.columns["seq"].push_back(k);
         run.columns["t_robot_s"].push_back(robot);

@@ -3,13 +3,13 @@
 
 #include "base/random.h"
 #include "gap/pipeline/analyse.h"
+#include "tests/gap/simulated.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <string>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -22,23 +22,15 @@ constexpr double kMillisecond = 1e-3;
 Experiment frames(const std::function<double(RandomStream&, int frame)>& wait, std::uint64_t seed,
                   double step) {
     RandomStream random(seed, "waits/frames");
-    Experiment experiment;
-    experiment.kind = Kind::Timing;
-    for (int r = 0; r < 6; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        run.rows = 300;
-        const double begun = 0.5 + random.uniform();
-        for (int k = 0; k < 300; ++k) {
-            const double robot = 0.1 * k, host = robot + begun + wait(random, k);
-            run.columns["seq"].push_back(k);
-            run.columns["t_robot_s"].push_back(robot);
-            run.columns["t_host_s"].push_back(step > 0 ? std::round(host / step) * step : host);
-            run.columns["bytes"].push_back(84);
-        }
-        experiment.runs.push_back(std::move(run));
-    }
-    return experiment;
+    double begun = 0.0;
+    return test::recorded(Kind::Timing, 6, 300, [&](Run& run, int, int k) {
+        if (k == 0) begun = 0.5 + random.uniform();
+        const double robot = 0.1 * k, host = robot + begun + wait(random, k);
+        run.columns["seq"].push_back(k);
+        run.columns["t_robot_s"].push_back(robot);
+        run.columns["t_host_s"].push_back(step > 0 ? std::round(host / step) * step : host);
+        run.columns["bytes"].push_back(84);
+    });
 }
 
 double exponential(RandomStream& random) {
