@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <random>
 
 using namespace puckloop;
@@ -78,6 +79,9 @@ TEST_CASE("a debugger sees a dsPIC, stops it, and goes back") {
     const Lamp lamp(bench, random);
     GdbServer server(bench.folder, "--mcu dspic30f6014a " + lamp.image);
     GdbClient gdb(server.socket());
+    using std::filesystem::perms;
+    CHECK((std::filesystem::status(server.socket()).permissions() & perms::all) ==
+          (perms::owner_read | perms::owner_write));
 
     CHECK_THAT(gdb.ask("qSupported:swbreak+"), Contains("ReverseStep+") && Contains("qXfer:features:read+"));
     CHECK_THAT(gdb.ask("qXfer:features:read:target.xml:0,fff"),

@@ -135,6 +135,16 @@ TEST_CASE("a run of another user is named as such") {
     CHECK_THAT(problem, Contains("out/hello: belongs to another user"));
 }
 
+TEST_CASE("the socket is its user's alone, whatever files he makes for others") {
+    const Run run;
+    const ControlPlace place(run.socket, run.results);
+    const mode_t before = ::umask(0);
+    const auto source = make_control_socket(run.socket);
+    ::umask(before);
+    CHECK((fs::status(run.socket).permissions() & fs::perms::all) ==
+          (fs::perms::owner_read | fs::perms::owner_write));
+}
+
 TEST_CASE("a command that comes before a new run has its socket waits for it") {
     const Run run;
     const ControlPlace place(run.socket, run.results);

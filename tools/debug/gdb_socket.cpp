@@ -61,6 +61,8 @@ GdbSocket::GdbSocket(std::string_view option, const std::string& where) {
         }
         listener_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
         check(listener_ >= 0);
+        // Before there is a file: Linux gives it the descriptor's mode, so at no time may others open it.
+        check(::fchmod(listener_, S_IRUSR | S_IWUSR) == 0);
         check(::bind(listener_, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0);
         check(::listen(listener_, 1) == 0);
         address_ = path_;

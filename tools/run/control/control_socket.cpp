@@ -31,9 +31,10 @@ class ControlSocket final : public physics::CommandSource {
     explicit ControlSocket(const std::string& path) : acceptor_(io_) {
         error_code error;
         acceptor_.open(stream_protocol(), error);
-        if (!error) acceptor_.bind(stream_protocol::endpoint(path), error);
-        if (!error && ::chmod(path.c_str(), S_IRUSR | S_IWUSR) != 0)
+        // Before there is a file: Linux gives it the descriptor's mode, so at no time may others open it.
+        if (!error && ::fchmod(acceptor_.native_handle(), S_IRUSR | S_IWUSR) != 0)
             error.assign(errno, boost::system::system_category());
+        if (!error) acceptor_.bind(stream_protocol::endpoint(path), error);
         if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
         if (error) throw RunError(fmt::format("{}: {}", path, error.message()));
         accept();
