@@ -84,7 +84,8 @@ double pile_cost(const Predicted& p, double y, RowRole role) {
 }  // namespace
 
 bool is_simple(const Predicted& predicted) {
-    return predicted.lapse.empty() && predicted.floor <= 0.0 && predicted.ceiling <= 0.0;
+    return predicted.lapse.empty() && predicted.chance.empty() && predicted.floor <= 0.0 &&
+           predicted.ceiling <= 0.0;
 }
 
 void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& noise,
@@ -116,6 +117,7 @@ void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& no
         cost[i] = log_scale - constant +
                   (lapses ? lapse_cost(p, i, z, std::sqrt(variance), tail, constant) : tail / 2);
         if (p.floor > 0.0) cost[i] += dead_zone_cost(o, p.floor, o.y[i]);
+        if (!p.chance.empty()) cost[i] -= std::log(p.chance[i]);
     }
 }
 

@@ -15,6 +15,8 @@ constexpr double kEdge = 0.02;           // of a batch: rounding of clocks
 constexpr double kClockDoubt = 3e-4;     // s: when in its loop the robot reads its clock
 constexpr std::size_t kShareEarly = 30;  // one frame in so many is taken to have waited least
 constexpr double kClockSd = 1e-4;        // s: of that doubt
+constexpr double kMostLater = 8.0;       // batches: what comes later still is late by itself
+constexpr double kRoundings = 2.0;       // of the clocks: how much less even frames may look
 constexpr double kFineBatch = 10.0;      // clock doubts: in a shorter batch the arrival has no say
 constexpr double kLongestFine = 0.02;    // s: longer ones show in the arrivals themselves
 constexpr std::size_t kStretch = 20;     // rows
@@ -38,31 +40,41 @@ double nearest(double time, double batch, double phase) {
     return phase + batch * std::round((time - phase) / batch);
 }
 
-/// Delivered at whole multiples of the batch: each frame waits for the next one. A frame that is ready
-/// just as a batch leaves may catch it or not: there the arrival itself says which, unless batches are so
-/// short that it would say so of most. Of these the mean of both is expected, and how far they lie apart
-/// (`extra`, where asked for). Returns the sum of the distances.
+/// When a frame is ready, counted in batches from one that leaves at 0.
+double in_batches(const BatchGrid& grid, double ready) {
+    return (ready + grid.least - grid.phase) / grid.batch;
+}
+
+/// Delivered at whole multiples of the batch: each frame waits for the next one. The arrival itself shows
+/// whether it caught that one, the one before or a later one. Returns the sum of the distances from batches
+/// that the time it was ready at allows.
 double deliver(const Observable& o, std::size_t from, std::size_t to, const BatchGrid& grid,
-               const std::vector<double>& arrival, std::vector<double>& mean, std::vector<double>& extra) {
-    const double batch = grid.batch, phase = grid.phase;
-    const bool fine = is_fine_batch(batch);
-    const double doubt = std::max(kEdge * batch, kClockDoubt);
+               const std::vector<double>& ready, Placed& placed) {
+    const double doubt = std::max(kEdge, kClockDoubt / grid.batch);
     double off = 0.0;
     for (std::size_t k = from; k < to; ++k) {
-        const double ready = (arrival[k] + grid.least - phase) / batch;
-        if (fine) {
-            const double slot = std::ceil(ready), since = ready - (slot - 1);
-            const double edge = std::min(since, 1 - since) * batch;
-            const double other = 0.5 * std::erfc(edge / (kClockSd * std::numbers::sqrt2));
-            mean[k] = phase + batch * (since < 0.5 ? slot - other : slot + other);
-            extra[k] = batch * std::sqrt(other * (1 - other));
-        } else {
-            const double first = phase + batch * std::ceil(ready - doubt / batch);
-            const double last = phase + batch * std::ceil(ready + doubt / batch);
-            mean[k] = std::clamp(nearest(o.y[k], batch, phase), first, last);
-            if (!extra.empty()) extra[k] = 0.0;
-        }
-        off += std::abs(o.y[k] - mean[k]);
+        const double now = in_batches(grid, ready[k]), next = std::ceil(now),
+                     caught = std::round((o.y[k] - grid.phase) / grid.batch);
+        placed.later[k] = std::clamp(caught - next, -1.0, kMostLater);
+        placed.mean[k] = grid.phase + grid.batch * (next + placed.later[k]);
+        const double allowed = std::clamp(caught, std::ceil(now - doubt), std::ceil(now + doubt));
+        off += std::abs(o.y[k] - grid.phase - grid.batch * allowed);
+    }
+    return off;
+}
+
+/// Batches so short that the arrival would show it of most frames whether they caught one: the mean of both
+/// that may be is expected, and how far they lie apart. Returns the sum of the distances.
+double deliver_fine(const Observable& o, std::size_t from, std::size_t to, const BatchGrid& grid,
+                    const std::vector<double>& ready, Placed& placed) {
+    double off = 0.0;
+    for (std::size_t k = from; k < to; ++k) {
+        const double now = in_batches(grid, ready[k]), next = std::ceil(now), since = now - (next - 1);
+        const double edge = std::min(since, 1 - since) * grid.batch;
+        const double other = 0.5 * std::erfc(edge / (kClockSd * std::numbers::sqrt2));
+        placed.mean[k] = grid.phase + grid.batch * (since < 0.5 ? next - other : next + other);
+        placed.extra[k] = grid.batch * std::sqrt(other * (1 - other));
+        off += std::abs(o.y[k] - placed.mean[k]);
     }
     return off;
 }
@@ -70,8 +82,7 @@ double deliver(const Observable& o, std::size_t from, std::size_t to, const Batc
 /// Each half of a run is placed by the other: a saw fine enough follows any slow error of the rows that
 /// it was placed by, and only a batch goes on so in rows that had no part in it.
 double place_by_waits(const Observable& o, std::size_t from, std::size_t to, double batch,
-                      const std::vector<double>& arrival, std::vector<double>& mean,
-                      std::vector<double>& extra) {
+                      const std::vector<double>& arrival, Placed& placed) {
     const std::size_t half = from + (to - from) / 2;
     const auto jump_in = [&](std::size_t first, std::size_t last) {
         double usual = 0.0;
@@ -91,8 +102,8 @@ double place_by_waits(const Observable& o, std::size_t from, std::size_t to, dou
     }
     const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
     std::nth_element(rest.begin(), middle, rest.end());
-    return deliver(o, from, half, {batch, early_jump + *middle, *middle, *middle}, arrival, mean, extra) +
-           deliver(o, half, to, {batch, late_jump + *middle, *middle, *middle}, arrival, mean, extra);
+    return deliver_fine(o, from, half, {batch, early_jump + *middle, *middle, *middle}, arrival, placed) +
+           deliver_fine(o, half, to, {batch, late_jump + *middle, *middle, *middle}, arrival, placed);
 }
 
 /// The batch near by that the waits of stretches of `rows` beat with most, looked for in steps by which their
@@ -168,10 +179,30 @@ BatchGrid grid_of(const Observable& o, std::size_t from, std::size_t to, double 
 }
 
 double place_batches(const Observable& o, std::size_t from, std::size_t to, double batch,
-                     const std::vector<double>& arrival, std::vector<double>& mean,
-                     std::vector<double>& extra) {
-    if (is_fine_batch(batch)) return place_by_waits(o, from, to, batch, arrival, mean, extra);
-    return deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, mean, extra);
+                     const std::vector<double>& arrival, Placed& placed) {
+    const bool fine = is_fine_batch(batch);
+    placed.mean.resize(o.y.size());
+    (fine ? placed.extra : placed.later).resize(o.y.size());
+    if (fine) return place_by_waits(o, from, to, batch, arrival, placed);
+    const double off = deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, placed);
+    // Where frames go on as evenly as batches do, nothing shows that they waited, and a grid of their own
+    // rate would be a clock of another: batches follow the frames there.
+    const auto wait = [&](std::size_t k) { return placed.mean[k] - batch * placed.later[k] - arrival[k]; };
+    const double uneven = kClockDoubt + kRoundings * o.instrument.quantum;
+    for (std::size_t k = from + 1; k < to; ++k)
+        if (std::abs(wait(k) - wait(k - 1)) > uneven) return off;
+    for (std::size_t k = from; k < to; ++k)
+        placed.mean[k] = arrival[k] + batch * placed.later[k];
+    return off;
+}
+
+std::vector<double> chances_of(const std::vector<double>& later) {
+    const double rows = static_cast<double>(later.size()),
+                 next = (static_cast<double>(std::ranges::count(later, 0.0)) + 0.5) / (rows + 1);
+    std::vector<double> chance;
+    for (const double one : later)
+        chance.push_back(one == 0.0 ? next : (1 - next) / (1 + kMostLater));
+    return chance;
 }
 
 std::vector<double> beats_of_waits(const Observable& o, const std::vector<double>& ready, double shortest,
@@ -224,13 +255,13 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     }
     std::sort(bands.rbegin(), bands.rend());
     bands.resize(std::min(bands.size(), kBandsTried));
-    std::vector<double> mean(n), extra(n);
+    Placed placed;
     std::vector<std::pair<double, double>> tried;  // what is left, batch
     const auto look_at = [&](double coarse) {
         const double batch = refined_by_waits(o, ready, waited, coarse, 2 * step * coarse);
         double off = 0.0;
         for (const auto& [from, to] : stretches_of(o, n))
-            off += place_batches(o, from, to, batch, ready, mean, extra);
+            off += place_batches(o, from, to, batch, ready, placed);
         tried.emplace_back(off, batch);
     };
     for (const auto& [power, coarse] : bands)

@@ -30,13 +30,22 @@ struct BatchGrid {
 BatchGrid grid_of(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
                   const std::vector<double>& ready);
 
+/// Where frames come when they are handed over in batches, s, of all rows.
+struct Placed {
+    std::vector<double> mean;
+    std::vector<double> extra;  ///< of a fine batch: the sd of frames that may catch either of two
+    std::vector<double> later;  ///< of others: by how many batches the arrival shows a frame to miss the next
+};
+
 /// Rows [from, to) of `arrivals`, one chain. `ready`: when each would come by itself, up to a zero of the
-/// run's own. Sets their `mean` and, of a fine batch, `extra`: the sd of those that may catch either of two
-/// batches (s, as all times here). The run's grid is placed where arrivals themselves lie; of a fine batch
-/// each half of the run is placed by the other, for a saw so fine follows any slow error of the rows that it
-/// was placed by. Returns the sum of the distances from `mean`.
+/// run's own. The run's grid is placed where arrivals themselves lie; of a fine batch each half of the run is
+/// placed by the other, for a saw so fine follows any slow error of the rows that it was placed by. Returns
+/// the sum of the distances from the nearest batch that a frame may have caught.
 double place_batches(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
-                     const std::vector<double>& ready, std::vector<double>& mean, std::vector<double>& extra);
+                     const std::vector<double>& ready, Placed& placed);
+
+/// How likely each row's batch was before it was seen: the next one as often as it was, any other alike.
+std::vector<double> chances_of(const std::vector<double>& later);
 
 /// Batches from `shortest` to 20 ms that waits beat with, the likeliest few; `between`: usual time between
 /// frames. They are looked for in stretches of a few rows, over which few frequencies differ, then in whole

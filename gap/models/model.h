@@ -65,6 +65,7 @@ struct Predicted {
     std::vector<double> lapse_scale;  ///< sd of a lapse, observable's unit
     double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit
     bool lapse_both = false;          ///< shifted up or down, equally likely
+    std::vector<double> chance;       ///< of the mean, where the reading chose it of several (1)
     double floor = 0.0;               ///< reading 0 means "below this" (dead zone); 0: the instrument's floor
     double ceiling = 0.0;             ///< readings above this, noise included, are cut to it; 0: none are
     double pile = 0.0;                ///< sd of a reading cut to the ceiling, observable's unit

@@ -394,20 +394,19 @@ class TimingModel final : public ModelOf<Numbers> {
         const Observable& o = arrivals();
         const double batch = now.batch;
         const std::vector<double> arrival = arrivals_ready(now);
-        p.mean.resize(o.y.size());
-        p.extra.assign(batch >= shortest_ && is_fine_batch(batch) ? o.y.size() : 0, 0.0);
+        Placed placed{arrival, {}, {}};
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
-            if (batch < shortest_) {
-                std::vector<double> left;
-                for (std::size_t k = i; k < end; ++k)
-                    left.push_back(o.y[k] - arrival[k]);
-                const double zero = middle_of(std::move(left), o.instrument.quantum);
-                for (std::size_t k = i; k < end; ++k)
-                    p.mean[k] = arrival[k] + zero;
-                continue;
-            }
-            place_batches(o, i, end, batch, arrival, p.mean, p.extra);
+            if (batch >= shortest_) place_batches(o, i, end, batch, arrival, placed);
+            std::vector<double> left;
+            for (std::size_t k = i; k < end; ++k)
+                left.push_back(o.y[k] - placed.mean[k]);
+            const double zero = middle_of(std::move(left), o.instrument.quantum);
+            for (std::size_t k = i; k < end; ++k)
+                placed.mean[k] += zero;
         }
+        p.mean = std::move(placed.mean);
+        p.extra = std::move(placed.extra);
+        p.chance = chances_of(placed.later);
     }
 
     /// The chance that a frame is not given up because its batch comes too late.
