@@ -138,7 +138,7 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
         weights[as_index(i)] = weight(o, i);
         bend[as_index(i)] = std::sqrt(weight(o, i) * base.curvature[i]);
     }
-    if (of_rows_ && !base.innovations.mixed.empty()) {
+    if (!base.innovations.mixed.empty()) {
         gather_mixed(o, weights, gradient, curvature);
         return;
     }
@@ -202,7 +202,6 @@ void Objective::gather_mixed(std::size_t o, const Eigen::VectorXd& weights, Eige
 double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature,
                          Eigen::MatrixXd* rows) {
     double sum = value(x);
-    of_rows_ = rows != nullptr;
     base_noise_ = state_.noise;
     const std::size_t width = layout_.size();
     gradient = Eigen::VectorXd::Zero(as_index(width));

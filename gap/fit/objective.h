@@ -79,7 +79,6 @@ class Objective {
     const Weights& weights_;
     std::vector<double> last_x_;  ///< where value() was asked last
     double last_value_ = 0.0;
-    bool of_rows_ = false;  ///< every row's gradient was asked for: information, not a solver's step
     Prediction prediction_;
     std::array<Prediction, kLanes> moved_;
     std::vector<Base> bases_;

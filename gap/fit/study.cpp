@@ -33,6 +33,7 @@ constexpr double kLightEnough = 8;                   // degrees of freedom that 
 constexpr int kMostRounds = 6;                       // of fitting the noise alone
 constexpr double kSettled = 0.1;                     // nats that a round must bring
 
+constexpr double kLongMemory = 0.5;  // share of a sum's errors that is kept: beyond, something else may be
 constexpr std::size_t kManyRows = 6000;  // beyond, fits are begun on a part of them
 constexpr std::size_t kPartRows = 3000;
 
@@ -394,14 +395,18 @@ State Study::without(std::size_t effect, State state) const {
     return state;
 }
 
-/// Heavy tails take rows that an effect explains for outliers, which then pull at nothing.
+/// Heavy tails take rows that an effect explains for outliers, which then pull at nothing, and a sum's errors
+/// that are kept for long take pushes for themselves.
 bool Study::lighten_tails(State& state) const {
     bool any = false;
+    const Prediction prediction = model_->predicted(state.values);
     for (std::size_t o = 0; o < state.noise.size(); ++o) {
-        if (noise_parameters(model_->observables()[o]) == 0) continue;
+        const Observable& one = model_->observables()[o];
+        if (noise_parameters(one) == 0) continue;
         NoiseParameters& noise = state.noise[o];
         if (std::exp(noise.log_tail) > kLightEnough) continue;
         any = true;
+        if (adds_up(one) && noise.memory > kLongMemory) noise = first_guess(one, prediction[o]);
         noise.log_tail = std::log(kLightTail);
     }
     return any;

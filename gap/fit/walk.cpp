@@ -1,5 +1,7 @@
 #include "gap/fit/walk.h"
 
+#include "gap/stats/tails.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +11,7 @@ namespace {
 
 constexpr double kLeastDensity = 1e-300;
 constexpr std::size_t kHistories = 5;
+constexpr double kNoTail = 1e9;      // degrees of freedom: a push is normal, whatever errors are
 constexpr double kForgotten = 1e-4;  // of the likeliest history's weight
 
 }  // namespace
@@ -21,6 +24,10 @@ void PushedWalk::begin(double value, double guess, double unsure, const Lever& l
 
 PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, double memory, double tail,
                                    double chance, double push) {
+    if (tail != tail_) {
+        tail_ = tail;
+        normal_ = stats::normal_density(0.0) / std::exp(stats::StudentLaw(tail).log_height());
+    }
     next_.clear();
     double likely = 0.0, innovations = 0.0, off = 0.0;
     for (const History& old : kept_)
@@ -30,11 +37,15 @@ PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, doubl
             history.pushed = old.pushed << 1U | (pushed ? 1U : 0U);
             if (push > 0) history.weight *= pushed ? chance : 1 - chance;
             double innovation = 0.0;
-            const double variance = history.walk.filter(
-                value, arm, history.lever, drift + (pushed ? push : 0.0), memory, tail, innovation);
+            const double variance =
+                pushed ? history.walk.filter(value, arm, history.lever, drift + push, memory, kNoTail,
+                                             innovation)
+                       : history.walk.filter(value, arm, history.lever, drift, memory, tail, innovation);
             const double z = innovation / std::sqrt(variance);
             if (!pushed) off += old.weight * innovation;
-            history.weight *= std::exp(-(tail + 1) / 2 * std::log(1 + z * z / tail)) / std::sqrt(variance);
+            history.weight *= (pushed ? normal_ * std::exp(-z * z / 2)
+                                      : std::exp(-(tail + 1) / 2 * std::log(1 + z * z / tail))) /
+                              std::sqrt(variance);
             likely += history.weight;
             innovations += history.weight * z;
             next_.push_back(history);

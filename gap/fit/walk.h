@@ -133,6 +133,7 @@ class PushedWalk {
         std::uint32_t pushed;  ///< a bit for each of the last rows, the last one lowest
     };
     std::vector<History> kept_, next_;
+    double tail_ = 0.0, normal_ = 1.0;  ///< degrees of freedom, and a normal law's constant over theirs
 };
 
 }  // namespace puckloop::gap

@@ -109,6 +109,22 @@ TEST_CASE("jumps no larger than the noise are no pushes", "[gap][pushes]") {
     CHECK(pattern->where == "rows that were as likely not pushed");
 }
 
+TEST_CASE("pushes are as large as they were made, however sharp the tracker", "[gap][pushes]") {
+    const double size = 0.012;  // m, along each axis
+    double squares = 0.0, pushes = 0.0;
+    const Experiment experiment = toy_drives([&](RandomStream& random, int, int, double) {
+        if (random.uniform() > 0.03) return Made{1.0, 0.0, 0.0};
+        const double forward = size * random.normal(), aside = size * random.normal();
+        squares += forward * forward + aside * aside;
+        pushes += 1;
+        return Made{1.0, std::hypot(forward, aside), std::atan2(aside, forward)};
+    });
+    const Study study(experiment, 1);
+    const Fit fit = fit_of_pushes(study);
+    const double made = std::sqrt(squares / (2 * pushes));
+    CHECK(fit.fitted.state.values[*study.model().find("push.size")] == Approx(made).epsilon(0.1));
+}
+
 TEST_CASE("how often a robot is pushed is known as well as so few pushes can say", "[gap][pushes]") {
     const double rate = 0.03;  // a row
     double pushes = 0.0;
