@@ -1,6 +1,7 @@
 #include "gap/models/batches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -16,6 +17,7 @@ constexpr double kClockDoubt = 3e-4;     // s: when in its loop the robot reads 
 constexpr std::size_t kShareEarly = 30;  // one frame in so many is taken to have waited least
 constexpr double kClockSd = 1e-4;        // s: of that doubt
 constexpr double kMostLater = 8.0;       // batches: what comes later still is late by itself
+constexpr std::size_t kParts = 8;        // of a batch: where frames that wait before it miss it alike
 constexpr double kRoundings = 2.0;       // of the clocks: how much less even frames may look
 constexpr double kFineBatch = 10.0;      // clock doubts: in a shorter batch the arrival has no say
 constexpr double kLongestFine = 0.02;    // s: longer ones show in the arrivals themselves
@@ -56,6 +58,7 @@ double deliver(const Observable& o, std::size_t from, std::size_t to, const Batc
         const double now = in_batches(grid, ready[k]), next = std::ceil(now),
                      caught = std::round((o.y[k] - grid.phase) / grid.batch);
         placed.later[k] = std::clamp(caught - next, -1.0, kMostLater);
+        placed.before[k] = next - now;
         placed.mean[k] = grid.phase + grid.batch * (next + placed.later[k]);
         const double allowed = std::clamp(caught, std::ceil(now - doubt), std::ceil(now + doubt));
         off += std::abs(o.y[k] - grid.phase - grid.batch * allowed);
@@ -182,7 +185,8 @@ double place_batches(const Observable& o, std::size_t from, std::size_t to, doub
                      const std::vector<double>& arrival, Placed& placed) {
     const bool fine = is_fine_batch(batch);
     placed.mean.resize(o.y.size());
-    (fine ? placed.extra : placed.later).resize(o.y.size());
+    for (auto* rows : fine ? std::vector{&placed.extra} : std::vector{&placed.later, &placed.before})
+        rows->resize(o.y.size());
     if (fine) return place_by_waits(o, from, to, batch, arrival, placed);
     const double off = deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, placed);
     // Where frames go on as evenly as batches do, nothing shows that they waited, and a grid of their own
@@ -196,12 +200,20 @@ double place_batches(const Observable& o, std::size_t from, std::size_t to, doub
     return off;
 }
 
-std::vector<double> chances_of(const std::vector<double>& later) {
-    const double rows = static_cast<double>(later.size()),
-                 next = (static_cast<double>(std::ranges::count(later, 0.0)) + 0.5) / (rows + 1);
+std::vector<double> chances_of(const Placed& placed) {
+    const auto part = [&](std::size_t k) {
+        return static_cast<std::size_t>(kParts * placed.before[k]) % kParts;
+    };
+    std::array<double, kParts> rows{}, caught{};
+    for (std::size_t k = 0; k < placed.later.size(); ++k) {
+        rows[part(k)] += 1;
+        caught[part(k)] += placed.later[k] == 0.0 ? 1 : 0;
+    }
     std::vector<double> chance;
-    for (const double one : later)
-        chance.push_back(one == 0.0 ? next : (1 - next) / (1 + kMostLater));
+    for (std::size_t k = 0; k < placed.later.size(); ++k) {
+        const double next = (caught[part(k)] + 0.5) / (rows[part(k)] + 1);
+        chance.push_back(placed.later[k] == 0.0 ? next : (1 - next) / (1 + kMostLater));
+    }
     return chance;
 }
 

@@ -35,6 +35,7 @@ struct Placed {
     std::vector<double> mean;
     std::vector<double> extra;  ///< of a fine batch: the sd of frames that may catch either of two
     std::vector<double> later;  ///< of others: by how many batches the arrival shows a frame to miss the next
+    std::vector<double> before;  ///< and by how much of a batch it is ready before that leaves
 };
 
 /// Rows [from, to) of `arrivals`, one chain. `ready`: when each would come by itself, up to a zero of the
@@ -44,8 +45,9 @@ struct Placed {
 double place_batches(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
                      const std::vector<double>& ready, Placed& placed);
 
-/// How likely each row's batch was before it was seen: the next one as often as it was, any other alike.
-std::vector<double> chances_of(const std::vector<double>& later);
+/// How likely each row's batch was before it was seen: the next one as often as frames caught it that were
+/// ready as long before, any other alike.
+std::vector<double> chances_of(const Placed& placed);
 
 /// Batches from `shortest` to 20 ms that waits beat with, the likeliest few; `between`: usual time between
 /// frames. They are looked for in stretches of a few rows, over which few frequencies differ, then in whole

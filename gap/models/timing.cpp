@@ -394,7 +394,7 @@ class TimingModel final : public ModelOf<Numbers> {
         const Observable& o = arrivals();
         const double batch = now.batch;
         const std::vector<double> arrival = arrivals_ready(now);
-        Placed placed{arrival, {}, {}};
+        Placed placed{arrival, {}, {}, {}};
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
             if (batch >= shortest_) place_batches(o, i, end, batch, arrival, placed);
             std::vector<double> left;
@@ -406,7 +406,7 @@ class TimingModel final : public ModelOf<Numbers> {
         }
         p.mean = std::move(placed.mean);
         p.extra = std::move(placed.extra);
-        p.chance = chances_of(placed.later);
+        p.chance = chances_of(placed);
     }
 
     /// The chance that a frame is not given up because its batch comes too late.
