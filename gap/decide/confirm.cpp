@@ -13,13 +13,26 @@ namespace {
 constexpr Effort kEffort{.iterations = 12};
 constexpr double kSamePrediction = 1e-6;  // of an observable's noise
 
-/// Runs of the second half: every other fold, so that repeats of one condition stand in both.
-std::vector<char> second_half(const Study& study) {
-    std::vector<char> second(study.experiment().runs.size(), 0);
+/// Runs of the second half: every other fold, so that repeats of one condition stand in both. The two runs in
+/// which a cause gains most are parted, so that of what shows in few runs each half has some.
+std::vector<char> second_half(const Study& study, const Selection& selection) {
+    const std::size_t runs = study.experiment().runs.size();
+    std::vector<char> second(runs, 0);
+    std::vector<double> gains(runs, 0.0);
     const auto& observables = study.model().observables();
     for (std::size_t o = 0; o < observables.size(); ++o)
-        for (std::size_t i = 0; i < observables[o].run.size(); ++i)
-            second[observables[o].run[i]] = static_cast<char>(study.fold_of()[o][i] % 2);
+        for (std::size_t i = 0; i < observables[o].run.size(); ++i) {
+            const std::uint32_t run = observables[o].run[i];
+            second[run] = static_cast<char>(study.fold_of()[o][i] % 2);
+            gains[run] += selection.held_chosen.score[o][i] - selection.held_none.score[o][i];
+        }
+    const auto best = [&] {
+        return static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
+    };
+    const std::size_t most = best();
+    gains[most] = -INFINITY;
+    const std::size_t next = best();
+    second[next] = second[most] != 0 ? 0 : 1;
     return second;
 }
 
@@ -78,8 +91,13 @@ std::string not_confirmed(const Study& study, const Selection& selection, double
                           const std::function<Asked(const Experiment&)>& ask) {
     const Experiment& whole = study.experiment();
     if (whole.runs.size() < thresholds::kRunsToConfirm || study.folds() < 2) return "";
-    const auto second = second_half(study);
-    const Weights first = study.rows_of_parts([](int fold) { return fold % 2 == 0; });
+    const auto second = second_half(study, selection);
+    Weights first;
+    for (const Observable& observable : study.model().observables()) {
+        first.emplace_back();
+        for (const std::uint32_t run : observable.run)
+            first.back().push_back(second[run] != 0 ? 0.0 : 1.0);
+    }
     Fit half_fit = selection.chosen;
     half_fit.fitted = fit(study.model(), half_fit.freed, half_fit.fitted.state, first, kEffort);
     const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kEffort);

@@ -73,7 +73,8 @@ std::vector<Row> rows_of(const Predicted& predicted, const NoiseParameters& nois
         const double z = innovations.z[i];
         Row row{z, 0.0, 0.0, 0.0, blocks[i]};
         if (!predicted.lapse.empty() && predicted.lapse[i] > 0.0) {
-            const double scale = std::sqrt(innovations.variance[i]), shift = predicted.lapse_shift / scale,
+            const double scale = std::sqrt(innovations.variance[i]),
+                         shift = of_row(predicted.lapse_shift, i) / scale,
                          width = std::hypot(predicted.lapse_scale[i] / scale, 1.0),
                          up = normal_density(z - shift, width);
             row.lapse = predicted.lapse[i];

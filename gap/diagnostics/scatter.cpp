@@ -101,8 +101,9 @@ std::vector<std::string> scattered_by(const Study& study, const Fit& fit,
 }
 
 bool lapses(const Study& study, const Fit& fit) {
-    return std::ranges::any_of(study.model().predicted(fit.fitted.state.values),
-                               [](const Predicted& one) { return !one.lapse.empty(); });
+    return !std::ranges::equal(study.model().predicted(fit.fitted.state.values),
+                               study.model().predicted(study.model().neutral()), {}, &Predicted::lapse,
+                               &Predicted::lapse);
 }
 
 Fit without_effects(const Study& study, const Fit& fit, const std::vector<std::size_t>& dropped) {

@@ -39,7 +39,7 @@ std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit);
 std::vector<std::string> scattered_by(const Study& study, const Fit& fit,
                                       const std::vector<std::size_t>& effects);
 
-/// Does the fit take single rows for lapses, each by a chance of its own?
+/// Does the fit take single rows for lapses, each by a chance of its own, that none were without it?
 bool lapses(const Study& study, const Fit& fit);
 
 /// The fit's other effects, fitted again without them.

@@ -31,7 +31,8 @@ double needed_gain(std::size_t candidates, std::size_t taken) {
 }
 
 bool gains_enough(const Gain& gain, std::size_t candidates, std::size_t taken) {
-    return gain.sum > needed_gain(candidates, taken) && gain.sum > thresholds::kStandardErrors * gain.sd;
+    const double needed = needed_gain(candidates, taken);
+    return gain.sum > needed && (gain.sum > thresholds::kStandardErrors * gain.sd || gain.in_several(needed));
 }
 
 }  // namespace puckloop::gap

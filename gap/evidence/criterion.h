@@ -6,7 +6,9 @@
 // mean, so that a gain beyond ln(1 / alpha) comes by chance in at most alpha of all cases (Wasserman, Ramdas
 // and Balakrishnan, PNAS 117, 2020), and beyond ln(sets / alpha) when the best of so many sets was looked
 // for. That holds if the simpler model's noise is right. Against noise that is not, the gain must also stand
-// clear of its standard error over runs (Vehtari, Gelman and Gabry, Stat. Comput. 27, 2017).
+// clear of its standard error over runs (Vehtari, Gelman and Gabry, Stat. Comput. 27, 2017). What is rare
+// shows in few runs, by very different amounts, and no standard error over runs is small: there it must be
+// enough without the run that gains most, and no run may clearly lose.
 
 #include <cstddef>
 #include <vector>
@@ -24,7 +26,9 @@ struct Gain {
 
     /// What is rare, or shows in few runs only, is not seen in most blocks, but more than once; and it is not
     /// one block's doing: what the others lose does not eat up what the second best gains.
-    bool in_several() const { return clearly_better > 1 && clearly_worse == 0 && without_best > kClearGain; }
+    bool in_several(double needed = kClearGain) const {
+        return clearly_better > 1 && clearly_worse == 0 && without_best > needed;
+    }
 };
 Gain gain_of(const std::vector<double>& by_block);
 
@@ -32,7 +36,7 @@ Gain gain_of(const std::vector<double>& by_block);
 /// is the price of the catalogue's size.
 double needed_gain(std::size_t candidates, std::size_t taken);
 
-/// Is the gain more than chance and more than its own standard error allows for?
+/// Is the gain more than chance, and more than its own standard error allows for or than one run makes?
 bool gains_enough(const Gain& gain, std::size_t candidates, std::size_t taken);
 
 }  // namespace puckloop::gap

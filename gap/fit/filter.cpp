@@ -90,7 +90,8 @@ struct Known {
 Known beside_lapse(const Predicted& p, std::size_t i, double off, double sd, const stats::StudentLaw& law,
                    const Known& ahead) {
     const double root = std::sqrt(ahead.variance);
-    const double width = p.lapse_scale[i] / sd, shift = p.lapse_shift / sd, spread = std::hypot(width, root);
+    const double width = p.lapse_scale[i] / sd, shift = of_row(p.lapse_shift, i) / sd,
+                 spread = std::hypot(width, root);
     struct Case {
         double weight;
         Known then;
@@ -185,8 +186,8 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         out.variance[i] = variance * sd * sd;
         if (!pushes) continue;
         const double width = p.lapse_scale[i] / sd;
-        const auto row =
-            pushed.filter(error, arm, drift + gained, noise.memory, nu, p.lapse[i], width * width);
+        const auto row = pushed.filter(error, arm, drift + gained, noise.memory, nu,
+                                       {p.lapse[i], of_row(p.lapse_shift, i) / sd, width * width});
         out.z[i] = row.innovation;
         out.mixed[i] = row.cost + std::log(sd);
         out.off[i] = row.off * sd;

@@ -42,7 +42,7 @@ double event_cost(double y, double mean) {
 /// A row that is a lapse with some probability; `tail` is twice the deviance of t.
 double lapse_cost(const Predicted& p, std::size_t i, double z, double sd, double tail, double constant) {
     const double lapse = p.lapse[i];
-    const double width = p.lapse_scale[i] / sd, shift = p.lapse_shift / sd;
+    const double width = p.lapse_scale[i] / sd, shift = of_row(p.lapse_shift, i) / sd;
     const double wide = lapse * std::exp(-0.5 * std::log(2 * kPi) - constant) / std::sqrt(width * width + 1);
     const double peak = 1 - lapse + wide;
     const double spread = 2 * (width * width + 1);
@@ -56,7 +56,7 @@ double lapse_cost(const Predicted& p, std::size_t i, double z, double sd, double
 /// quantile residual: Dunn and Smyth, J. Comput. Graph. Stat. 5, 1996).
 double quantile_residual(const Predicted& p, std::size_t i, double z, double sd,
                          const stats::StudentLaw& law) {
-    const double lapse = p.lapse[i], shift = p.lapse_shift / sd;
+    const double lapse = p.lapse[i], shift = of_row(p.lapse_shift, i) / sd;
     const double spread = std::hypot(p.lapse_scale[i] / sd, 1.0), side = z < 0 ? -1.0 : 1.0;
     const double here = stats::normal_tail((side * z - side * shift) / spread),
                  other = p.lapse_both ? stats::normal_tail((side * z + side * shift) / spread) : here;

@@ -38,9 +38,12 @@ double Objective::fill(std::size_t o) {
     Base& base = bases_[o];
     const Observable& observable = model_.observables()[o];
     static const std::vector<double> even;
+    const bool known = observable.fixed_sd > 0;  // few parameters move it
+    if (known && base.filled == prediction_[o]) return base.sum;
     filter(observable, prediction_[o], state_.noise[o], base.innovations);
-    return cost_sum(observable, prediction_[o], state_.noise[o], base.innovations,
-                    weights_.empty() ? even : weights_[o]);
+    if (known) base.filled = prediction_[o];
+    return base.sum = cost_sum(observable, prediction_[o], state_.noise[o], base.innovations,
+                               weights_.empty() ? even : weights_[o]);
 }
 
 double Objective::priors(const double* x) const {

@@ -49,6 +49,8 @@ class Objective {
         Innovations innovations;
         std::vector<double> slope, curvature, tail;
         std::vector<double> cost;  ///< empty until it is needed
+        Predicted filled;          ///< what the innovations are of; of an observable whose noise is known
+        double sum = 0.0;
     };
     /// How one moved number changes the rows of one observable.
     struct Column {

@@ -119,9 +119,12 @@ class PushedWalk {
     };
 
     void begin(double value, double guess, double unsure, const Lever& lever);
-    /// `chance` that the row was pushed, by an amount of variance `push`; the rest as Walk::filter.
-    Row filter(double value, double arm, double drift, double memory, double tail, double chance,
-               double push);
+    /// How likely a row was pushed, and by how much: mean and variance.
+    struct Push {
+        double chance, mean, variance;
+    };
+    /// The rest as Walk::filter.
+    Row filter(double value, double arm, double drift, double memory, double tail, const Push& push);
     /// How likely the row `back` rows ago (fewer than 32) was pushed, as seen from the last one.
     double pushed(unsigned back) const;
 

@@ -63,7 +63,7 @@ struct Predicted {
     double lever_sd = 0.0;            ///< of that number, anew in each chain
     std::vector<double> lapse;        ///< probability that the row is a lapse (0)
     std::vector<double> lapse_scale;  ///< sd of a lapse, observable's unit
-    double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit
+    std::vector<double> lapse_shift;  ///< mean of a lapse, observable's unit (0)
     bool lapse_both = false;          ///< shifted up or down, equally likely
     std::vector<double> chance;       ///< of the mean, where the reading chose it of several (1)
     double floor = 0.0;               ///< reading 0 means "below this" (dead zone); 0: the instrument's floor

@@ -35,8 +35,10 @@ constexpr double kMostLateStep = 0.5;
 constexpr double kOpenSteps = 0.6;  // of a wheel, each time its speed changes: the timer's phase
 constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula gives
 constexpr double kSameTime = 1e-6;  // s
-constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was taken
-constexpr double kSpan = 100.0;     // s: wheels that show the heading of a whole run
+constexpr double kLossDoubt = 0.1;  // of the steps that a lost command costs: when it was sent, when the next
+constexpr double kStray = 1e-3, kStraySteps = 50;  // jumps of a counter that nothing explains: of rows, steps
+constexpr double kCounterSd = 3.0;                 // steps: whole steps, and when a row was taken
+constexpr double kSpan = 100.0;                    // s: wheels that show the heading of a whole run
 constexpr double kShortestSpan = 0.02, kLongestSpan = 1000.0;  // s: they show nothing, everything
 constexpr double kSpanWidth = 3.0;                             // ln s
 constexpr double kSmallAngle = 1e-2;  // rad: below, two terms of a series do for sine and cosine
@@ -447,7 +449,7 @@ class MotionModel final : public ModelOf<Numbers> {
                         std::size_t i, double before, double now, std::size_t row, Prediction& out) const {
         const std::array<Loss, 2> loss{lost(path.wheel[0].jumps, drop, before, now),
                                        lost(path.wheel[1].jumps, drop, before, now)};
-        const double left = loss[0].steps * metre[0], right = loss[1].steps * metre[1];
+        const double left = std::abs(loss[0].steps) * metre[0], right = std::abs(loss[1].steps) * metre[1];
         const double chance = std::max(loss[0].chance, loss[1].chance);
         for (std::size_t o = 0; o < 3; ++o) {
             const double scale =
@@ -467,15 +469,19 @@ class MotionModel final : public ModelOf<Numbers> {
             const Observable& o = observables_[3 + w];
             Predicted& p = out[3 + w];
             p.mean = (*commanded)[w];
-            p.lapse.assign(drop > 0 ? o.y.size() : 0, 0.0);
-            p.lapse_scale.assign(drop > 0 ? o.y.size() : 0, 0.0);
+            // Whatever else makes a counter jump costs once, and not in all rows after it.
+            p.lapse.assign(o.y.size(), kStray);
+            p.lapse_scale.assign(o.y.size(), kStraySteps);
+            p.lapse_shift.assign(o.y.size(), 0.0);
             if (drop <= 0) continue;
             for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {
                 for (std::size_t i = first; i < end; ++i) {
                     const double before = o.starts[i] != 0 ? o.time[i] : o.time[i - 1];
                     const Loss loss = lost(path.asked[w].jumps, drop, before, o.time[i]);
+                    if (loss.chance < kStray) continue;
                     p.lapse[i] = loss.chance;
-                    p.lapse_scale[i] = loss.steps;
+                    p.lapse_shift[i] = loss.steps;
+                    p.lapse_scale[i] = kLossDoubt * std::abs(loss.steps);
                 }
             });
         }

@@ -114,7 +114,7 @@ Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double 
     const double again = std::round((from - last.time) / (to - from));
     const double chance = std::pow(drop, 1 + std::max(again, 0.0));
     if (chance < kLeastChance) return {};
-    return {chance, std::abs(last.change) * (to - from)};
+    return {chance, -last.change * (to - from)};
 }
 
 void heading_errors(std::span<const double> above, std::span<const double> time, double span,

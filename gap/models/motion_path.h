@@ -51,7 +51,8 @@ double slipped(std::span<const SpeedJump> jumps, double metre, double inverse_mu
                double to);
 
 /// A lost command leaves the wheel at its old speed until the host says the same again, in the next row: how
-/// likely a row is off by one lost after a change, and by how many steps. `drop`: chance to lose one.
+/// likely a row is off by one lost after a change, and by how many steps (more are positive). `drop`: chance
+/// to lose one.
 struct Loss {
     double chance = 0.0, steps = 0.0;
 };

@@ -336,10 +336,8 @@ class ProximityModel final : public ModelOf<Numbers> {
         });
         fill_rows(p.lapse, n, rate != 0.0, [&](std::size_t i) { return std::min(rate * others_[i], 0.9); });
         p.lapse_scale.assign(p.lapse.size(), kHitSpread * now.interference_size);
-        if (rate != 0.0) {
-            p.lapse_shift = now.interference_size;
-            p.lapse_both = true;
-        }
+        p.lapse_shift.assign(p.lapse.size(), now.interference_size);
+        p.lapse_both = rate != 0.0;
         p.line_amplitude = now.flicker;
         p.line_frequency = now.flicker_frequency;
     }

@@ -278,7 +278,7 @@ class RabModel final : public ModelOf<Numbers> {
         p.pile = 1 / rail;
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.3);
-        p.lapse_shift = other > 0 ? -now.multipath_loss : 0.0;
+        p.lapse_shift.assign(p.lapse.size(), -now.multipath_loss);
         if (other > 0 && std::ranges::any_of(occluded_, [](double o) { return o > 0; }))
             for (std::size_t i = 0; i < n; ++i)
                 p.lapse[i] = other * (occluded_[i] > 0 ? 1.0 : 0.05);

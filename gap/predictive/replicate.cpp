@@ -46,7 +46,7 @@ class Scale {
 double lapse_of(const Predicted& p, std::size_t i, RandomStream& random) {
     if (p.lapse.empty() || random.uniform() >= p.lapse[i]) return 0.0;
     const double side = p.lapse_both && random.uniform() < 0.5 ? -1.0 : 1.0;
-    return side * p.lapse_shift + p.lapse_scale[i] * random.normal();
+    return side * of_row(p.lapse_shift, i) + p.lapse_scale[i] * random.normal();
 }
 
 /// First-order autoregression of t innovations, beside a line of unknown phase.

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
+#include <string>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -136,6 +138,46 @@ TEST_CASE("what rounding may do by itself is no cause, what goes beyond it is on
     CHECK(cut_off.causes.empty());  // half a step too low
     CHECK(more.decision == Decision::Named);
     CHECK(more.causes.at(0).name == "ground_gain");
+}
+
+TEST_CASE("commands lost in two runs of many are named, in one they are not", "[gap][decide]") {
+    // In so many runs: one command lost, or wheels that stand still for a row while they are commanded.
+    const auto lost_in = [](int runs, bool still = false) {
+        constexpr double kRow = 0.1, kSpeed = 500, kStep = std::numbers::pi * 0.041 / 1000;
+        Experiment experiment;
+        experiment.kind = Kind::Motion;
+        experiment.nominal["inverse_friction"] = 0.0;
+        for (int r = 0; r < 16; ++r) {
+            RandomStream random(17, "lost commands " + std::to_string(r));
+            Run run;
+            run.name = "run" + std::to_string(r);
+            double counted = 0.0;
+            for (int k = 0; k < 120; ++k) {
+                const auto command = [](int row) { return row / 20 % 2 == 0 ? kSpeed : 0.0; };
+                run.columns["t_s"].push_back(kRow * k);
+                run.columns["x_m"].push_back(counted * kStep + 1e-3 * random.normal());
+                run.columns["y_m"].push_back(1e-3 * random.normal());
+                run.columns["theta_rad"].push_back(5e-3 * random.normal());
+                for (const char* wheel : {"left", "right"}) {
+                    run.columns[std::string("cmd_") + wheel].push_back(command(k));
+                    run.columns[std::string("steps_") + wheel].push_back(counted);
+                }
+                const bool here = r % 3 == 1 && r / 3 < runs && k == (still ? 47 : 20 * (r % 5 + 1));
+                counted += kRow * (here && still ? 0.0 : command(here ? k - 1 : k));
+                ++run.rows;
+            }
+            experiment.runs.push_back(std::move(run));
+        }
+        return analyse(experiment);
+    };
+    const Verdict two = lost_in(2);
+    INFO(two.summary);
+    CHECK(two.decision == Decision::Named);
+    REQUIRE(two.causes.size() == 1);
+    CHECK(two.causes[0].name == "command_loss");
+    CHECK(lost_in(2, true).decision != Decision::Named);
+    CHECK(lost_in(1).decision != Decision::Named);
+    CHECK(lost_in(0).decision == Decision::NoEffect);
 }
 
 TEST_CASE("the best of a catalogue meets the criterion by chance as seldom as is claimed") {

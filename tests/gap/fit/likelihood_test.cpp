@@ -224,7 +224,7 @@ TEST_CASE("a lapse's innovation is as far out as the row was unlikely, and the n
     RandomStream random(3, "test/lapses in carried noise");
     std::vector<double> y;
     Predicted p;
-    p.lapse_shift = kHeight;
+    p.lapse_shift.assign(kRows, kHeight);
     p.lapse_both = GENERATE(false, true);
     double last = random.normal();
     for (std::size_t i = 0; i < kRows; ++i) {

@@ -1,4 +1,5 @@
 #include "base/random.h"
+#include "gap/decide/thresholds.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/select.h"
@@ -142,6 +143,17 @@ TEST_CASE("what shows in few runs is clear when a second one bears out the best"
     std::vector<double> one(32, 0.0);
     one[3] = 20.0;
     CHECK_FALSE(gain_of(one).in_several());
+    // A cause is asked for as much without the best run as it has to gain at all: its standard error over
+    // runs, most of which cannot show it, says nothing.
+    constexpr std::size_t kEffects = 16;
+    std::vector<double> rare(28, -0.1);
+    rare[3] = 2000.0, rare[9] = 12.0;
+    CHECK(gain_of(rare).sum < thresholds::kStandardErrors * gain_of(rare).sd);
+    CHECK(gains_enough(gain_of(rare), kEffects, 1));
+    CHECK_FALSE(gains_enough(gain_of(two), kEffects, 1));
+    rare[5] = -4.0;  // a run speaks against it
+    CHECK_FALSE(gains_enough(gain_of(rare), kEffects, 1));
+    CHECK_FALSE(gains_enough(gain_of(one), kEffects, 1));
 }
 
 TEST_CASE("selection takes nothing from data without effects", "[gap][fit]") {

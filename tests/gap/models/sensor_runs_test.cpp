@@ -73,7 +73,7 @@ TEST_CASE("foreign pulses in the world come as often and as large as the forward
     for (const double hit : hits)
         if (hit != 0.0) sizes.push_back(std::abs(hit));
     CHECK(static_cast<double>(sizes.size()) / 20000 == Approx(said[0].lapse[0]).epsilon(0.1));
-    CHECK(worlds::mean_of(sizes) == Approx(said[0].lapse_shift).epsilon(0.03));
+    CHECK(worlds::mean_of(sizes) == Approx(said[0].lapse_shift[0]).epsilon(0.03));
     CHECK(worlds::sd_of(sizes) == Approx(said[0].lapse_scale[0]).epsilon(0.1));
     CHECK(said[0].lapse_both);
     CHECK(std::abs(worlds::mean_of(hits)) < 1);

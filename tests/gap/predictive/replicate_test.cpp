@@ -115,7 +115,7 @@ TEST_CASE("what happens or not happens as often as predicted, lapses come at the
     Predicted p = level(0.0);
     p.lapse.assign(kRows, 0.1);
     p.lapse_scale.assign(kRows, 1.0);
-    p.lapse_shift = 100.0;
+    p.lapse_shift.assign(kRows, 100.0);
     const auto lapses = replicated(chains(NoiseKind::Carry), p, {0.0, 0.0, std::log(30.0), 0.0}, random);
     const auto far = std::count_if(lapses.begin(), lapses.end(), [](double one) { return one > 50; });
     CHECK(static_cast<double>(far) / kRows == Approx(0.1).margin(4 * std::sqrt(0.09 / kRows)));
