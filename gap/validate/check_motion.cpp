@@ -1,10 +1,12 @@
 #include "gap/validate/checks.h"
 
 #include "gap/stats/robust.h"
+#include "gap/validate/units.h"
 #include "physics/description/robot_constants.h"
 
 #include <Eigen/Core>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -16,20 +18,20 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kFastestWheel = 5.0;  // m/s
-constexpr double kFactor = 5.0;        // between what two columns say of one thing
-constexpr double kSideways = 0.6;      // share of a straight step that must lie along the heading
+constexpr double kFastestWheel = 5.0;       // m/s
+constexpr double kFactor = 5.0;             // between what two columns say of one thing
+constexpr double kWay = 0.05, kTurn = 0.5;  // m, rad: beyond a tracker's noise; what a marker's swing adds
+constexpr double kClear = 0.5;              // correlation of columns that go together
+constexpr double kSideways = 0.6;           // share of a straight step that must lie along the heading
 
 struct Path {
     double length = 0.0;  // tracked
-    double steps = 0.0;   // of both wheels, absolute
     double duration = 0.0, largest_turn = 0.0;
 };
 
 Path measure(const Run& run) {
     const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
-    const auto &left = run.column("steps_left"), &right = run.column("steps_right"),
-               &time = run.column("t_s");
+    const auto& time = run.column("t_s");
     Path path;
     std::size_t last = run.rows;
     for (std::size_t i = 0; i < run.rows; ++i) {
@@ -38,8 +40,6 @@ Path measure(const Run& run) {
             const double turn = std::remainder(theta[i] - theta[last], 2 * std::numbers::pi);
             path.length += std::hypot(x[i] - x[last], y[i] - y[last]);
             path.largest_turn = std::max(path.largest_turn, std::abs(turn));
-            if (!left.empty() && !right.empty() && !std::isnan(left[i] + right[i] + left[last] + right[last]))
-                path.steps += std::abs(left[i] - left[last]) + std::abs(right[i] - right[last]);
             path.duration += time[i] - time[last];
         }
         last = i;
@@ -67,8 +67,15 @@ void check_counter(const Experiment& experiment, const Run& run, const char* nam
     }
 }
 
-/// Counters beside commands: each wheel's counter must follow its own command, and by as much.
-void check_commands(const Experiment& experiment, const Run& run) {
+/// Does the tracker see the robot go somewhere?
+bool moves(const Run& run) {
+    stats::Range x, y;
+    x.take(run.column("x_m")), y.take(run.column("y_m"));
+    return std::hypot(x.high - x.low, y.high - y.low) > kWay;
+}
+
+/// Counters beside commands: each wheel's counter must follow its own command. All steps go to `all`.
+void check_commands(const Experiment& experiment, const Run& run, Pairs& all) {
     if (!run.has("steps_left") || !run.has("cmd_left")) return;
     const auto &time = run.column("t_s"), &left = run.column("steps_left"),
                &right = run.column("steps_right"), &cmd_left = run.column("cmd_left"),
@@ -88,19 +95,12 @@ void check_commands(const Experiment& experiment, const Run& run) {
         ran += steps.abs();
         commanded += wanted.abs();
         for (const int w : {0, 1})
-            along[w] += std::copysign(steps[w], steps[w] * wanted[w]);
+            along[w] += std::copysign(steps[w], steps[w] * wanted[w]), all.add_both(wanted[w], steps[w]);
     }
-    const double counted = ran.sum(), asked = commanded.sum();
-    constexpr double kEnough = 500;  // steps asked for, both wheels
-    if (asked > kEnough && (counted > kFactor * asked || counted < asked / kFactor))
-        refuse(experiment, run,
-               fmt::format("the counters ran {:.4g} steps where the commands over t_s ask for {:.4g}: wrong "
-                           "unit of t_s or cmd_left, cmd_right",
-                           counted, asked),
-               "steps/s and seconds");
+    constexpr double kEnough = 500;  // steps asked for
     constexpr const char* kSide[] = {"left", "right"};
     for (const int w : {0, 1})
-        if (commanded[w] > kEnough && ran[w] == 0)
+        if (commanded[w] > kEnough && ran[w] == 0 && moves(run))
             refuse(experiment, run,
                    fmt::format("steps_{} stands still while its wheel is commanded", kSide[w]),
                    "a counter that counts");
@@ -109,47 +109,50 @@ void check_commands(const Experiment& experiment, const Run& run) {
             refuse(experiment, run,
                    fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign", kSide[w]),
                    "forward positive in both");
-    if (asked > kEnough && crossed < 0.3 * own)
+    if (commanded.sum() > kEnough && crossed < 0.3 * own)
         refuse(experiment, run,
                "steps_left follows cmd_right and steps_right cmd_left: left and right are swapped in one",
                "a wheel's counter beside its command");
 }
 
-constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
-
-/// How many times as far as its wheels a heading turns.
-std::vector<double> turns_of(const Run& run, const std::vector<Stretch>& stretches) {
+/// Turns by the wheels, and of the heading.
+void add_turns(const Experiment& experiment, const Run& run, Pairs& turns) {
+    constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad
     const auto& theta = run.column("theta_rad");
-    std::vector<double> turns;
-    for (const Stretch& one : stretches)
-        if (std::abs(one.turned) >= kLeastTurn)
-            turns.push_back(std::abs((theta[one.last] - theta[one.first]) / one.turned));
-    return turns;
+    for (const Stretch& one : stretches_of(experiment, run, kLeastWay, kLeastTurn))
+        if (std::abs(one.turned) >= kLeastTurn) turns.add(one.turned, theta[one.last] - theta[one.first]);
 }
 
-void check_heading(const Experiment& experiment, const Run& run, const std::vector<double>& turns,
-                   bool counted) {
+void check_heading(const Experiment& experiment, const Run& run, const Pairs& turns, bool counted) {
     constexpr std::size_t kEnough = 8;
     constexpr double kDegrees = 10.0, kLeastTurned = 0.25;  // a degree for a radian is 57, a turn 0.16
-    if (turns.size() < kEnough) return;
-    const double middle = stats::upper_median(turns);
-    const std::string ratio = fmt::format("theta_rad turns {:.3g} times as far as the wheels do", middle);
+    constexpr double kWrap = 2.0;                           // times as far: none, or a heading that wraps
+    if (turns.seen.size() < kEnough) return;
+    std::vector<double> times;
+    Pairs unwrapped;
+    for (std::size_t i = 0; i < turns.seen.size(); ++i) {
+        times.push_back(std::abs(turns.seen[i] / turns.expected[i]));
+        if (times.back() < kWrap) unwrapped.add_both(turns.expected[i], turns.seen[i]);
+    }
+    const double middle = stats::upper_median(times), factor = unwrapped.factor(kClear);
+    const char* ratio = "theta_rad turns {:.3g} times as far as the wheels do";
     if (middle > kDegrees)
-        refuse(experiment, run, ratio + ": degrees?", "radians, or theta_rad = \"deg\" in [columns]");
-    if (counted && middle < kLeastTurned)  // commands may move nothing
-        refuse(experiment, run, ratio + ": wrong unit, or not the heading",
+        refuse(experiment, run, fmt::format(fmt::runtime(ratio), middle) + ": degrees?",
+               "radians, or theta_rad = \"deg\" in [columns]");
+    if (counted && factor < kLeastTurned)  // commands may move nothing
+        refuse(experiment, run, fmt::format(fmt::runtime(ratio), factor) + ": wrong unit, or not the heading",
                "radians; \"turn\" and \"deg\" are known in [columns]");
 }
 
 /// Where the tracker saw the robot go while its wheels went straight.
-void check_direction(const Experiment& experiment, const Run& run, const std::vector<Stretch>& stretches) {
+void check_direction(const Experiment& experiment, const Run& run) {
     const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
     double along = 0.0, all = 0.0;
-    for (const Stretch& one : stretches) {
+    for (const Stretch& one : stretches_of(experiment, run, kWay, kTurn)) {
         const double dx = x[one.last] - x[one.first], dy = y[one.last] - y[one.first],
                      turn = theta[one.last] - theta[one.first], step = std::hypot(dx, dy),
                      way = std::abs(one.way);
-        if (way < kLeastWay || step <= way / 2 || step >= 2 * way) continue;
+        if (way < kWay || step <= way / 2 || step >= 2 * way) continue;
         const double middle = theta[one.first] + std::remainder(turn, 2 * std::numbers::pi) / 2;
         along += std::copysign(1.0, one.way) * (dx * std::cos(middle) + dy * std::sin(middle));
         all += step;
@@ -183,6 +186,57 @@ void check_holes(Experiment& experiment, const Run& run) {
                 run.file, time[i] - time[i - 1], i + 1);
 }
 
+/// The way that the tracker saw, and the heading, against those that the wheels made or were asked for. A
+/// robot that is held goes together with neither.
+void check_way(Experiment& experiment, bool counted) {
+    constexpr double kAsked = 20;  // wheels need not do what they are asked for
+    constexpr std::size_t kEnough = 5;
+    Pairs x, y, both, theta;
+    std::vector<std::string> held;
+    std::size_t driven = 0;
+    for (const Run& run : experiment.runs) {
+        std::vector<double> gone;
+        for (const Stretch& one : stretches_of(experiment, run, kWay, kTurn, kWay)) {
+            const auto moved = [&](const char* column) {
+                return run.column(column)[one.last] - run.column(column)[one.first];
+            };
+            const double turned = std::remainder(moved("theta_rad"), 2 * std::numbers::pi),
+                         middle = run.column("theta_rad")[one.first] + turned / 2,
+                         ahead = one.way * std::cos(middle), aside = one.way * std::sin(middle);
+            x.add_both(ahead, moved("x_m")), both.add_both(ahead, moved("x_m"));
+            y.add_both(aside, moved("y_m")), both.add_both(aside, moved("y_m"));
+            theta.add_both(one.turned, turned);
+            if (std::abs(one.way) >= kWay)
+                gone.push_back(std::hypot(moved("x_m"), moved("y_m")) / std::abs(one.way));
+        }
+        if (!counted || gone.size() < kEnough) continue;
+        driven += 1;
+        if (stats::median(gone) < 1 / kFar) held.push_back(run.file);
+    }
+    const double factor = both.factor(kClear), most = counted ? kFactor : kAsked;
+    const std::string far = fmt::format("the robot went {:.3g} times as far as {}", factor,
+                                        counted ? "its wheels turned" : "the commands over t_s ask for");
+    if (factor > most || factor < 1 / most)
+        refuse(experiment, experiment.runs.front(),
+               far + (counted ? ": wrong unit of x_m, y_m or a wrong robot.wheel_radius / steps_per_turn in "
+                                "[nominal]"
+                              : ": wrong unit of t_s, of x_m and y_m or of cmd_left, cmd_right"),
+               counted ? "the same within a factor of five" : "seconds, metres and steps/s");
+    const std::string stands = fmt::format("{}: the tracker mostly sees the robot stand while its wheels "
+                                           "turn: held fast, off the floor, stalled, "
+                                           "or another thing is tracked",
+                                           fmt::join(held, ", "));
+    if (driven > 0 && held.size() == driven) refuse(experiment, stands, "runs in which the robot drives");
+    if (!held.empty()) experiment.cautions.push_back(stands);
+    const std::size_t before = experiment.cautions.size();
+    const char* other = counted ? "what the wheels did" : "cmd_left, cmd_right over t_s";
+    ask_factor(experiment, "x_m", other, x);
+    ask_factor(experiment, "y_m", other, y);
+    if (!counted && factor > kFar && experiment.cautions.size() == before)
+        experiment.caution("{}: are cmd_left, cmd_right in steps/s?", far);
+    if (!(factor < 1 / kFar)) ask_factor(experiment, "theta_rad", other, theta);  // else it is held
+}
+
 }  // namespace
 
 double metres_per_step(const Experiment& experiment) {
@@ -200,7 +254,7 @@ std::array<double, 2> steps_made(const Run& run, std::size_t row) {
 }
 
 std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, double least_way,
-                                  double least_turn) {
+                                  double least_turn, double least_tracked) {
     const double metre = metres_per_step(experiment),
                  axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
     const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
@@ -213,7 +267,9 @@ std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, 
         one.turned += (right - left) * metre / axle;
         const bool known =
             std::isfinite(one.way + x[i] + y[i] + theta[i] + x[one.first] + y[one.first] + theta[one.first]);
-        if (known && std::abs(one.way) < least_way && std::abs(one.turned) < least_turn) continue;
+        if (known && std::abs(one.way) < least_way && std::abs(one.turned) < least_turn &&
+            std::hypot(x[i] - x[one.first], y[i] - y[one.first]) < least_tracked)
+            continue;
         if (known) all.push_back(one);
         one = {i, i, 0.0, 0.0};
     }
@@ -224,10 +280,11 @@ std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, 
 /// far.
 void check_motion(Experiment& experiment) {
     double agree = 0.0, turned = 0.0;
-    double driven = 0.0, tracked = 0.0, duration = 0.0, asked_way = 0.0;
+    double tracked = 0.0, duration = 0.0;
     bool steps = false, heading_fixed = true;
     const double metre_per_step = metres_per_step(experiment);
-    std::vector<std::pair<const Run*, std::vector<Stretch>>> driven_by_run;
+    Pairs counted;
+    Pairs turns;
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
         tracked += path.length;
@@ -241,8 +298,8 @@ void check_motion(Experiment& experiment) {
         if (run.has("steps_left"))
             for (const char* counter : {"steps_left", "steps_right"})
                 check_counter(experiment, run, counter, metre_per_step);
-        driven_by_run.emplace_back(&run, stretches_of(experiment, run, kLeastWay, kLeastTurn));
-        check_commands(experiment, run);
+        add_turns(experiment, run, turns);
+        check_commands(experiment, run, counted);
         check_holes(experiment, run);
         if (path.largest_turn > 2.5)
             experiment.caution(
@@ -250,12 +307,10 @@ void check_motion(Experiment& experiment) {
                 path.largest_turn);
         const auto& theta = run.column("theta_rad");
         steps = steps || run.has("steps_left");
-        driven += path.steps / 2 * metre_per_step;
         for (std::size_t i = 1; i < run.rows; ++i) {
             const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
             const auto [left, right] = steps_made(run, i);
-            const double asked = right - left, way = (std::abs(left) + std::abs(right)) / 2 * metre_per_step;
-            if (std::isfinite(way)) asked_way += way;
+            const double asked = right - left;
             if (std::isnan(turn) || std::isnan(asked)) continue;
             agree += turn * asked;
             turned += std::abs(turn * asked);
@@ -265,42 +320,31 @@ void check_motion(Experiment& experiment) {
     if (tracked == 0.0 && heading_fixed)
         refuse(experiment, first, "the pose is the same in every row",
                "what the tracker saw of a robot that moves");
-    std::vector<double> turns;
-    for (const auto& [run, stretches] : driven_by_run)
-        for (const double turn : turns_of(*run, stretches))
-            turns.push_back(turn);
+    if (const double factor = counted.factor(kClear); factor > kFactor || factor < 1 / kFactor)
+        refuse(
+            experiment, first,
+            fmt::format("the counters ran {:.3g} times as many steps as the commands over t_s ask for: wrong "
+                        "unit of t_s or cmd_left, cmd_right",
+                        factor),
+            "steps/s and seconds");
+    check_way(experiment, steps);
     check_heading(experiment, first, turns, false);
     if (turned > 0 && agree < -0.5 * turned)
         refuse(experiment, first,
                "the robot turns the other way than its wheels: left and right are swapped, or theta_rad runs "
                "clockwise",
                "the right wheel faster for a counter-clockwise turn");
-    if (steps && driven > 0.1 && (tracked > 5 * driven || tracked < driven / 5) && tracked > 1e-9) {
-        if (tracked > 5 * driven || turned == 0 || tracked > 0.01 * driven)
-            refuse(experiment, first,
-                   fmt::format("the tracker saw {:.3g} m while the wheels turned {:.3g} m: wrong unit of "
-                               "x_m, y_m or a wrong robot.wheel_radius / steps_per_turn in [nominal]",
-                               tracked, driven),
-                   "the same within a factor of five");
-    }
-    // Wheels that slow commands do not move make less way, but not in all runs together.
-    if (!steps && asked_way > 0.1 && tracked < asked_way / 20 && tracked > 1e-9)
-        refuse(
-            experiment, first,
-            fmt::format(
-                "the tracker saw {:.3g} m while the commands over t_s ask for {:.3g} m: wrong unit of t_s, "
-                "of x_m and y_m or of cmd_left, cmd_right",
-                tracked, asked_way),
-            "seconds, metres and steps/s");
     if (duration > 0 && tracked / duration > 3.0)
         refuse(experiment, first,
                fmt::format("the robot moves {:.3g} m/s on average: wrong unit of x_m, y_m or t_s",
                            tracked / duration),
                "at most 3 m/s");
-    for (const auto& [run, stretches] : driven_by_run)
-        if (run->has("steps_left")) {
-            check_heading(experiment, *run, turns_of(*run, stretches), true);
-            check_direction(experiment, *run, stretches);
+    for (const Run& run : experiment.runs)
+        if (run.has("steps_left")) {
+            Pairs of_run;
+            add_turns(experiment, run, of_run);
+            check_heading(experiment, run, of_run, true);
+            check_direction(experiment, run);
         }
 }
 

@@ -39,9 +39,10 @@ struct Stretch {
     std::size_t first, last;
     double way, turned;
 };
-/// One behind the other, each as short as may be; the pose is known at both ends.
+/// One behind the other, each as short as may be; the pose is known at both ends. A stretch ends as well
+/// where the tracker saw the robot go `least_tracked` m.
 std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, double least_way,
-                                  double least_turn);
+                                  double least_turn, double least_tracked = 1e300);
 
 /// Rows of two robots in one file, where no column `unit` says so. Motion: InputError if a run's pose jumps
 /// to and fro between two paths. Timing: InputError if `seq` does not count on; a caution where frames come

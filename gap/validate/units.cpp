@@ -142,38 +142,7 @@ void check_times(Experiment& experiment) {
 
 // ---- one column against another
 
-/// What a column should be beside what it is; offsets count for nothing.
-struct Pairs {
-    std::vector<double> expected, seen;
-
-    void add(double one, double other) {
-        if (std::isfinite(one + other)) expected.push_back(one), seen.push_back(other);
-    }
-    /// How many times as much one changes as the other; NaN where they hardly go together.
-    double factor(double together = 0.7) const {
-        constexpr std::size_t kFew = 8;
-        if (seen.size() < kFew || std::abs(stats::correlation(expected, seen)) < together) return NAN;
-        return stats::standard_deviation(seen) / stats::standard_deviation(expected);
-    }
-    /// Only those with the largest of what is seen, or only with the smallest.
-    Pairs part(bool large) const {
-        const double end = stats::quantile(seen, large ? 0.6 : 0.4);
-        Pairs some;
-        for (std::size_t i = 0; i < seen.size(); ++i)
-            if (large ? seen[i] > end : seen[i] < end) some.add(expected[i], seen[i]);
-        return some;
-    }
-};
-
-constexpr double kFar = 4.0;    // factor that no effect makes
 constexpr double kG = 9.80665;  // m/s2
-
-bool ask_factor(Experiment& experiment, std::string_view column, std::string_view other, const Pairs& pairs,
-                double high = kFar) {
-    const double factor = pairs.factor();
-    return ask(experiment, column, factor, 1 / kFar, high,
-               fmt::format("{} changes {:.3g} times as much as {} lets expect", column, factor, other));
-}
 
 double at(const Run& run, const char* column, std::size_t row) {
     const auto& values = run.column(column);
@@ -241,40 +210,28 @@ void check_follows(Experiment& experiment) {
     felt("lateral", "ax", "roll_rad", kG);
 }
 
-/// The way and the heading that the tracker saw, against those that the wheels made or were asked for. What
-/// is refused (check_motion.cpp) lies further out still.
-void check_drives(Experiment& experiment) {
-    constexpr double kWay = 0.05,
-                     kTurn = 0.5;  // m, rad: beyond a tracker's noise; what a marker's swing adds
-    Pairs x, y, both, theta;
-    bool counted = false;
-    for (const Run& run : experiment.runs) {
-        counted = counted || run.has("steps_left");
-        for (const Stretch& one : stretches_of(experiment, run, kWay, kTurn)) {
-            const auto moved = [&](const char* column) {
-                return at(run, column, one.last) - at(run, column, one.first);
-            };
-            const double middle = at(run, "theta_rad", one.first) + one.turned / 2;
-            for (const double sign : {1.0, -1.0}) {  // both ways, so that the mean is 0
-                const double ahead = sign * one.way * std::cos(middle),
-                             aside = sign * one.way * std::sin(middle);
-                x.add(ahead, sign * moved("x_m")), both.add(ahead, sign * moved("x_m"));
-                y.add(aside, sign * moved("y_m")), both.add(aside, sign * moved("y_m"));
-                theta.add(sign * one.turned, sign * std::remainder(moved("theta_rad"), 2 * std::numbers::pi));
-            }
-        }
-    }
-    const char* wheels = counted ? "what the wheels did" : "cmd_left, cmd_right over t_s";
-    const bool asked =
-        ask_factor(experiment, "x_m", wheels, x) + ask_factor(experiment, "y_m", wheels, y) > 0;
-    if (!(both.factor() < 1 / kFar)) ask_factor(experiment, "theta_rad", wheels, theta);  // else it is held
-    if (!asked && !counted && both.factor() > kFar)
-        experiment.caution("{}: the robot went {:.3g} times as far as the commands over t_s ask for: are "
-                           "cmd_left, cmd_right in steps/s?",
-                           files_with(experiment, "cmd_left"), both.factor());
+}  // namespace
+
+double Pairs::factor(double together) const {
+    constexpr std::size_t kFew = 8;
+    if (seen.size() < kFew || !(std::abs(stats::correlation(expected, seen)) >= together)) return NAN;
+    return stats::standard_deviation(seen) / stats::standard_deviation(expected);
 }
 
-}  // namespace
+Pairs Pairs::part(bool large) const {
+    const double end = stats::quantile(seen, large ? 0.6 : 0.4);
+    Pairs some;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        if (large ? seen[i] > end : seen[i] < end) some.add(expected[i], seen[i]);
+    return some;
+}
+
+void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, const Pairs& pairs,
+                double high) {
+    const double factor = pairs.factor();
+    ask(experiment, column, factor, 1 / kFar, high,
+        fmt::format("{} changes {:.3g} times as much as {} lets expect", column, factor, other));
+}
 
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value) {
     constexpr std::size_t kMost = 2;
@@ -293,7 +250,6 @@ void check_units(Experiment& experiment) {
         check_size(experiment, info);
     check_times(experiment);
     check_follows(experiment);
-    if (experiment.kind == Kind::Motion) check_drives(experiment);
 }
 
 }  // namespace puckloop::gap

@@ -4,12 +4,37 @@
 #include "gap/data/columns.h"
 #include "gap/data/experiment.h"
 
+#include <cmath>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace puckloop::gap {
 
+constexpr double kFar = 4.0;  ///< factor between two columns that no effect makes
+
+/// What a column should be beside what it is; offsets count for nothing.
+struct Pairs {
+    std::vector<double> expected, seen;
+
+    void add(double one, double other) {
+        if (std::isfinite(one + other)) expected.push_back(one), seen.push_back(other);
+    }
+    /// Both ways, so that the mean is 0, of what has no offset.
+    void add_both(double one, double other) { add(one, other), add(-one, -other); }
+    /// How many times as much one changes as the other; NaN where they hardly go together.
+    double factor(double together = 0.7) const;
+    /// Only those with the largest of what is seen, or only with the smallest.
+    Pairs part(bool large) const;
+};
+
 /// What to do about an impossible value of this column (SI): "; numbers in mm need ...", or nothing.
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value);
+
+/// A caution where a column changes less than a quarter or more than `high` times as much as expected, and
+/// another unit puts that right.
+void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, const Pairs& pairs,
+                double high = kFar);
 
 /// A caution for each column whose values lie far outside what a robot, its sensors and an arena have, or
 /// that is at odds with another column of the same experiment, where another unit puts it right.

@@ -34,7 +34,7 @@ Made drive(double scale_x, double scale_y) {
 
 void check_no_unit(const Made& made) {
     const std::string cautions = cautions_of(made);
-    for (const char* word : {"state ", "unit of", "steps/s"})
+    for (const char* word : {"state ", "unit of", "steps/s?"})
         CHECK_THAT(cautions, !Contains(word));
 }
 
@@ -103,6 +103,51 @@ TEST_CASE("a drive whose tracked way is not what its commands ask for") {
     CHECK_THAT(cautions_of(scaled(drive(1, 1), "theta_rad", 1 / 6.2831853)),
                Contains("theta_rad changes 0.159 times as much") &&
                    Contains("state theta_rad = \"turn\" in [columns]"));
+}
+
+TEST_CASE("commands and times in another unit, beside counters and beside the way alone") {
+    constexpr double kMetre = 2 * 3.14159265 * 0.0205 / 1000;  // of a step
+    const auto with = [](const Made& made, double of_commands, double of_times) {
+        return scaled(scaled(scaled(made, "cmd_left", of_commands), "cmd_right", of_commands), "t_s",
+                      of_times);
+    };
+    const Made counted = clean("motion"), asked = drive(1, 1);
+    for (const auto& [of_commands, of_times] :
+         {std::pair{kMetre, 1.0}, {100 * kMetre, 1.0}, {1.0, 1.0 / 60}, {1.0, 1000.0}}) {
+        INFO(of_commands << " " << of_times);
+        CHECK_THAT(
+            refusal(with(counted, of_commands, of_times)),
+            Contains("times as many steps as the commands over t_s ask for: wrong unit of t_s or cmd"));
+        CHECK_THAT(refusal(with(asked, of_commands, of_times)),
+                   Contains("times as far as the commands over t_s ask for: wrong unit of t_s"));
+    }
+    CHECK_THAT(refusal(with(counted, 1000 * kMetre, 1)), Contains("the counters ran 7.7"));
+    CHECK_THAT(cautions_of(with(asked, 1000 * kMetre, 1)),
+               Contains("the robot went 7.7") && Contains("are cmd_left, cmd_right in steps/s?"));
+    check_no_unit(with(counted, 0, 1));  // the firmware drives by itself
+}
+
+TEST_CASE("a robot that is held, or does nothing of what it is asked for, is no wrong unit") {
+    Made held = clean("motion");
+    for (const char* name : {"cmd_left", "cmd_right", "steps_left", "steps_right"})
+        held = scaled(held, name, 3);
+    RandomStream random(Catch::rngSeed(), "gap/bad input/units/held");
+    for (const auto& [name, noise] : {std::pair{"x_m", 2e-3}, {"y_m", 2e-3}, {"theta_rad", 0.02}})
+        held = changed(held, name, [&, sd = noise](std::size_t, double) {
+            return fmt::format("{:.5f}", sd * random.normal());
+        });
+    CHECK_THAT(refusal(held), Contains("the tracker mostly sees the robot stand while its wheels turn"));
+    check_no_unit(without(without(held, "steps_left"), "steps_right"));
+    Made idle = held;
+    for (const char* counter : {"steps_left", "steps_right"})
+        idle = changed(idle, counter, [](std::size_t, double) { return "7"; });
+    check_no_unit(idle);
+    Made pinned = clean("motion");  // half way through
+    for (std::size_t i = pinned.rows.size() / 2; i < pinned.rows.size(); ++i)
+        for (const char* name : {"x_m", "y_m", "theta_rad"})
+            pinned.rows[i][place_of(pinned, name)] = fmt::format(
+                "{:.5f}", std::stod(pinned.rows[39][place_of(pinned, name)]) + 1e-3 * random.normal());
+    check_no_unit(pinned);
 }
 
 TEST_CASE("a drive in which slow commands move nothing, or which is held fast, is no wrong unit") {
