@@ -186,6 +186,11 @@ void check_holes(Experiment& experiment, const Run& run) {
                 run.file, time[i] - time[i - 1], i + 1);
 }
 
+/// What commands are in, and what that is on the floor.
+std::string steps_a_second(const Experiment& experiment) {
+    return fmt::format("steps/s (a step is {:.3g} mm)", 1000 * metres_per_step(experiment));
+}
+
 /// The way that the tracker saw, and the heading, against those that the wheels made or were asked for. A
 /// robot that is held goes together with neither.
 void check_way(Experiment& experiment, bool counted) {
@@ -221,7 +226,8 @@ void check_way(Experiment& experiment, bool counted) {
                far + (counted ? ": wrong unit of x_m, y_m or a wrong robot.wheel_radius / steps_per_turn in "
                                 "[nominal]"
                               : ": wrong unit of t_s, of x_m and y_m or of cmd_left, cmd_right"),
-               counted ? "the same within a factor of five" : "seconds, metres and steps/s");
+               counted ? "the same within a factor of five"
+                       : "seconds, metres and " + steps_a_second(experiment));
     const std::string stands = fmt::format("{}: the tracker mostly sees the robot stand while its wheels "
                                            "turn: held fast, off the floor, stalled, "
                                            "or another thing is tracked",
@@ -233,7 +239,7 @@ void check_way(Experiment& experiment, bool counted) {
     ask_factor(experiment, "x_m", other, x);
     ask_factor(experiment, "y_m", other, y);
     if (!counted && factor > kFar && experiment.cautions.size() == before)
-        experiment.caution("{}: are cmd_left, cmd_right in steps/s?", far);
+        experiment.caution("{}: are cmd_left, cmd_right in {}?", far, steps_a_second(experiment));
     if (!(factor < 1 / kFar)) ask_factor(experiment, "theta_rad", other, theta);  // else it is held
 }
 
@@ -326,7 +332,7 @@ void check_motion(Experiment& experiment) {
             fmt::format("the counters ran {:.3g} times as many steps as the commands over t_s ask for: wrong "
                         "unit of t_s or cmd_left, cmd_right",
                         factor),
-            "steps/s and seconds");
+            "seconds and " + steps_a_second(experiment));
     check_way(experiment, steps);
     check_heading(experiment, first, turns, false);
     if (turned > 0 && agree < -0.5 * turned)

@@ -1,6 +1,7 @@
 #include "gap/validate/units.h"
 
 #include "gap/stats/robust.h"
+#include "gap/stats/series.h"
 #include "gap/validate/checks.h"
 #include "physics/description/parameters.h"
 #include "physics/sensors/proximity.h"
@@ -29,11 +30,13 @@ struct Usual {
 
 /// Range and bearing: heard to 0.8 m, in published sets to 6 m; frames of 4.5 and 9.2 ms. An edge of a
 /// printed floor under a spot of millimetres: up to some 1000 / m. The e-puck drives 0.13 m/s, weighs 0.2 kg
-/// and has one cell of 3.4 to 4.2 V.
+/// and has one cell of 3.4 to 4.2 V. No angle that matters lies below 1.6 degrees, a whole circle's half
+/// below 3.
 constexpr Usual kUsual[] = {
     {Kind::Proximity, "distance_m", 2e-4, 1.0},   {Kind::Rab, "distance_m", 0.02, 10.0},
     {Kind::Rab, "frame_time", 3e-4, 0.1},         {Kind::Rab, "send_period", 1e-3, 100.0},
     {Kind::Microphone, "distance_m", 0.01, 10.0}, {Kind::Ground, "grey_rate", 1e-3, 3000.0},
+    {Kind::Proximity, "angle_rad", 0.028, 1.6},   {Kind::Microphone, "angle_rad", 0.055, 7.0},
     {Kind::Motion, "load_kg", 1e-3, 5.0},         {std::nullopt, "battery_v", 1.0, 15.0},
     {std::nullopt, "speed", 1e-4, 4.0},
 };
@@ -174,9 +177,11 @@ void follow(Experiment& experiment, const char* column, const char* other, const
         for (std::size_t i = 0; i < run.rows; ++i)
             pairs.add(expected(run, i), at(run, column, i));
     // A black thing behind a white one: readings change by much, but beside neither.
-    for (const bool large : {false, true})
-        if (const double factor = pairs.part(large).factor(kOfPart); !(factor < 1 / kFar || factor > high))
-            return;
+    for (const bool large : {false, true}) {
+        const Pairs part = pairs.part(large);
+        const double factor = part.factor(kOfPart);
+        if (stats::varies(part.seen) && !(factor < 1 / kFar || factor > high)) return;
+    }
     ask_factor(experiment, column, other, pairs, high);
 }
 

@@ -34,7 +34,7 @@ Made drive(double scale_x, double scale_y) {
 
 void check_no_unit(const Made& made) {
     const std::string cautions = cautions_of(made);
-    for (const char* word : {"state ", "unit of", "steps/s?"})
+    for (const char* word : {"state ", "unit of", "in steps/s"})
         CHECK_THAT(cautions, !Contains(word));
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("millimetres and centimetres taken for each other, or not stated") {
 TEST_CASE("a drive whose tracked way is not what its commands ask for") {
     check_no_unit(drive(1, 1));
     CHECK_THAT(cautions_of(drive(8, 8)), Contains("times as far as the commands over t_s ask for: are "
-                                                  "cmd_left, cmd_right in steps/s?"));
+                                                  "cmd_left, cmd_right in steps/s (a step is 0.129 mm)?"));
     const std::string small = cautions_of(with_columns(drive(100, 100), "x_m = \"mm\"\ny_m = \"mm\""));
     CHECK_THAT(small, Contains("as cmd_left, cmd_right over t_s lets expect") &&
                           Contains("state x_m = \"cm\" in [columns]") &&
@@ -123,7 +123,8 @@ TEST_CASE("commands and times in another unit, beside counters and beside the wa
     }
     CHECK_THAT(refusal(with(counted, 1000 * kMetre, 1)), Contains("the counters ran 7.7"));
     CHECK_THAT(cautions_of(with(asked, 1000 * kMetre, 1)),
-               Contains("the robot went 7.7") && Contains("are cmd_left, cmd_right in steps/s?"));
+               Contains("the robot went 7.7") &&
+                   Contains("are cmd_left, cmd_right in steps/s (a step is 0.129 mm)?"));
     check_no_unit(with(counted, 0, 1));  // the firmware drives by itself
 }
 
@@ -224,6 +225,32 @@ TEST_CASE("angles against what else shows them") {
     CHECK_THAT(cautions_of(with_columns(clean("accelerometer"), "pitch_rad = \"deg\"")),
                Contains("times as much as ay lets expect") &&
                    Contains("state pitch_rad = \"rad\" in [columns]"));
+}
+
+TEST_CASE("a few tilts and pushes of a robot that is mostly at rest") {
+    const auto rests = [](double pitch_per, double push_per) {
+        return [=](int i, RandomStream& random) {
+            const double pitch = i % 9 == 0 ? 0.17 : i % 9 == 3 ? -0.1 : 0.0, push = i % 9 == 6 ? 3.0 : 0.0;
+            return std::vector{i * 0.1,
+                               std::round(2048 + 8 * random.normal()),
+                               std::round(2048 - 800 * (pitch + push / 9.8) + 8 * random.normal()),
+                               std::round(2848 + 8 * random.normal()),
+                               pitch / pitch_per,
+                               push / push_per};
+        };
+    };
+    const std::vector<std::string> names{"t_s", "ax", "ay", "az", "pitch_rad", "acceleration"};
+    check_no_unit(made("accelerometer", names, 120, "", rests(1, 1)));
+    CHECK_THAT(cautions_of(made("accelerometer", names, 120, "pitch_rad = \"deg\"", rests(1, 1))),
+               Contains("state pitch_rad = \"rad\" in [columns]"));
+    CHECK_THAT(cautions_of(made("accelerometer", names, 120, "", rests(1, 9.8))),
+               Contains("state acceleration = \"g\" in [columns]"));
+}
+
+TEST_CASE("angles in radians stated as degrees") {
+    CHECK_THAT(cautions_of(with_columns(clean("proximity"), "angle_rad = \"deg\"")),
+               Contains("angle_rad reaches 0.00698 rad, where something from 0.028 to 1.6 is usual") &&
+                   Contains("state angle_rad = \"rad\" in [columns]"));
 }
 
 TEST_CASE("a time in microseconds makes a run of weeks") {
