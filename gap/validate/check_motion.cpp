@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -214,7 +213,7 @@ void check_way(Experiment& experiment, bool counted) {
             if (std::abs(one.way) >= kWay)
                 gone.push_back(std::hypot(moved("x_m"), moved("y_m")) / std::abs(one.way));
         }
-        if (!counted || gone.size() < kEnough) continue;
+        if (!run.has("steps_left") || gone.size() < kEnough) continue;
         driven += 1;
         if (stats::median(gone) < 1 / kFar) held.push_back(run.file);
     }
@@ -228,10 +227,10 @@ void check_way(Experiment& experiment, bool counted) {
                               : ": wrong unit of t_s, of x_m and y_m or of cmd_left, cmd_right"),
                counted ? "the same within a factor of five"
                        : "seconds, metres and " + steps_a_second(experiment));
-    const std::string stands = fmt::format("{}: the tracker mostly sees the robot stand while its wheels "
-                                           "turn: held fast, off the floor, stalled, "
-                                           "or another thing is tracked",
-                                           fmt::join(held, ", "));
+    const std::string stands =
+        fmt::format("the tracker mostly sees the robot stand while its wheels turn, in {} of {} runs ({}): "
+                    "held fast, off the floor, stalled, or another thing is tracked",
+                    held.size(), driven, held.empty() ? "" : held.front());
     if (driven > 0 && held.size() == driven) refuse(experiment, stands, "runs in which the robot drives");
     if (!held.empty()) experiment.cautions.push_back(stands);
     const std::size_t before = experiment.cautions.size();
