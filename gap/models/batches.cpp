@@ -18,7 +18,7 @@ constexpr std::size_t kShareEarly = 30;  // one frame in so many is taken to hav
 constexpr double kClockSd = 1e-4;        // s: of that doubt
 constexpr double kMostLater = 8.0;       // batches: what comes later still is late by itself
 constexpr std::size_t kParts = 8;        // of a batch: where frames that wait before it miss it alike
-constexpr double kRoundings = 2.0;       // of the clocks: how much less even frames may look
+constexpr double kRoundings = 2.0;       // of the robot's clock: how much less even frames may look
 constexpr double kFineBatch = 10.0;      // clock doubts: in a shorter batch the arrival has no say
 constexpr double kLongestFine = 0.02;    // s: longer ones show in the arrivals themselves
 constexpr std::size_t kStretch = 20;     // rows
@@ -188,16 +188,17 @@ double place_batches(const Observable& o, std::size_t from, std::size_t to, doub
     for (auto* rows : fine ? std::vector{&placed.extra} : std::vector{&placed.later, &placed.before})
         rows->resize(o.y.size());
     if (fine) return place_by_waits(o, from, to, batch, arrival, placed);
-    const double off = deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, placed);
-    // Where frames go on as evenly as batches do, nothing shows that they waited, and a grid of their own
-    // rate would be a clock of another: batches follow the frames there.
-    const auto wait = [&](std::size_t k) { return placed.mean[k] - batch * placed.later[k] - arrival[k]; };
-    const double uneven = kClockDoubt + kRoundings * o.instrument.quantum;
+    return deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, placed);
+}
+
+void follow_even_frames(std::size_t from, std::size_t to, double batch, double rounding,
+                        const std::vector<double>& ready, Placed& placed) {
+    if (is_fine_batch(batch)) return;
+    const auto wait = [&](std::size_t k) { return placed.mean[k] - batch * placed.later[k] - ready[k]; };
     for (std::size_t k = from + 1; k < to; ++k)
-        if (std::abs(wait(k) - wait(k - 1)) > uneven) return off;
+        if (std::abs(wait(k) - wait(k - 1)) > kClockDoubt + kRoundings * rounding) return;
     for (std::size_t k = from; k < to; ++k)
-        placed.mean[k] = arrival[k] + batch * placed.later[k];
-    return off;
+        placed.mean[k] = ready[k] + batch * placed.later[k];
 }
 
 std::vector<double> chances_of(const Placed& placed) {

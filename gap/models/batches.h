@@ -45,6 +45,12 @@ struct Placed {
 double place_batches(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
                      const std::vector<double>& ready, Placed& placed);
 
+/// Where the frames of a chain go on as evenly as batches do, but for the `rounding` of the robot's clock
+/// (s), nothing shows that they waited, and a grid of their own rate would be a clock of another: there
+/// batches that are not fine follow the frames, and show by the steps of arrivals alone.
+void follow_even_frames(std::size_t from, std::size_t to, double batch, double rounding,
+                        const std::vector<double>& ready, Placed& placed);
+
 /// How likely each row's batch was before it was seen: the next one as often as frames caught it that were
 /// ready as long before, any other alike.
 std::vector<double> chances_of(const Placed& placed);

@@ -86,10 +86,10 @@ class TimingModel final : public ModelOf<Numbers> {
         if (quantum > kCoarse * usual_step(host.y)) quantum = 0.0;
         if (clocks_) {
             // Arrivals in batches keep to a step of their own: what is rounding, the robot's clock shows.
-            const double rounding = rounding_of(robot_);
+            rounding_ = rounding_of(robot_);
             shortest_ =
-                std::max(kShortestBatch, kRoundings * std::hypot(std::min(quantum, rounding), rounding));
-            quantum = std::hypot(quantum, rounding);
+                std::max(kShortestBatch, kRoundings * std::hypot(std::min(quantum, rounding_), rounding_));
+            quantum = std::hypot(quantum, rounding_);
         }
         gather_events(experiment);
         declare_all();
@@ -396,7 +396,10 @@ class TimingModel final : public ModelOf<Numbers> {
         const std::vector<double> arrival = arrivals_ready(now);
         Placed placed{arrival, {}, {}, {}};
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
-            if (batch >= shortest_) place_batches(o, i, end, batch, arrival, placed);
+            if (batch >= shortest_) {
+                place_batches(o, i, end, batch, arrival, placed);
+                follow_even_frames(i, end, batch, rounding_, arrival, placed);
+            }
             std::vector<double> left;
             for (std::size_t k = i; k < end; ++k)
                 left.push_back(o.y[k] - placed.mean[k]);
@@ -461,6 +464,7 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     bool clocks_ = false;
+    double rounding_ = 0.0;             // s, of the robot's clock
     double shortest_ = kShortestBatch;  // s: what is shorter is no batch but the clocks' rounding
     int ok_ = -1, shift_ = -1;
     std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
