@@ -1,9 +1,5 @@
 // argos3_epuck_rab: received strength of two range-and-bearing boards at 9 distances, published as mean and
 // deviation of the logarithm. From demiurge-project/argos3-epuck, MIT.
-//
-// The set holds a fit, not readings: one line a distance. Each becomes one row with the fit's median, all in
-// one run: nine measurements, whatever number of readings went into them. The deviations are kept as a column
-// that no model uses.
 
 #include "gap/importers/importers.h"
 #include "gap/importers/text_table.h"
@@ -15,10 +11,6 @@ namespace puckloop::gap::importers {
 namespace {
 
 constexpr const char* kFile = "rab_lognormal_iridia.csv";
-
-bool recognises(const std::filesystem::path& folder) {
-    return std::filesystem::is_regular_file(folder / kFile);
-}
 
 std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     const auto table = read_numbers(folder / kFile, ',', 3, 1);
@@ -45,8 +37,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 }  // namespace
 
-const Importer kArgosEpuckRab{"argos3_epuck_rab",
-                              "received strength of range-and-bearing boards at 9 distances", kFile,
-                              recognises, read};
+const Importer kArgosEpuckRab{
+    "argos3_epuck_rab", "received strength of range-and-bearing boards at 9 distances", kFile, kFile, read};
 
 }  // namespace puckloop::gap::importers

@@ -7,7 +7,6 @@
 // and 4 are highest, then 2, 1, 0, 7, ...). 3. Sensors sit where the simulator has them. 4. A sensor that
 // looks away from the face, or whose line meets it beyond 12 cm, sees nothing.
 
-#include "base/error.h"
 #include "gap/importers/importers.h"
 #include "gap/importers/text_table.h"
 #include "physics/description/parameters.h"
@@ -26,10 +25,6 @@ constexpr double kReach = 0.12;   // m, the simulator's reach of a proximity sen
 constexpr double kNothing = 1.0;  // m, written where a sensor sees nothing
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kSensors = 8;
-
-bool recognises(const std::filesystem::path& folder) {
-    return std::filesystem::is_regular_file(folder / kFile);
-}
 
 /// Distance along a sensor's axis to the face, and the angle of incidence (signed).
 std::pair<double, double> seen(const physics::Parameters& p, std::size_t sensor, double towards_box) {
@@ -77,6 +72,6 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 }  // namespace
 
 const Importer kEpuckBoxBearing{"epuck1_box_bearing", "e-puck 1 proximity sensors beside a box, by turn",
-                                kFile, recognises, read};
+                                kFile, kFile, read};
 
 }  // namespace puckloop::gap::importers

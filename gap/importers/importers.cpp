@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "gap/importers/text_table.h"
 
 #include <fmt/format.h>
 
@@ -47,7 +48,7 @@ const Importer& importer_for(const std::filesystem::path& folder, const std::str
     if (!std::filesystem::is_directory(folder, ignored))
         throw InputError(folder.string(), "", "is not a folder", "a folder with a published data set");
     for (const Importer& importer : importers())
-        if (importer.recognises(folder)) return importer;
+        if (!paths_like(folder, importer.files).empty()) return importer;
     std::string known;
     for (const Importer& importer : importers())
         known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", importer.name, importer.recognised_by);

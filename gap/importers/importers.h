@@ -15,7 +15,7 @@ struct Importer {
     const char* name;           ///< for --set and messages
     const char* what;           ///< one line
     const char* recognised_by;  ///< which files, for messages
-    bool (*recognises)(const std::filesystem::path& folder);
+    const char* files;          ///< of which it has some (paths_like)
     std::vector<WrittenExperiment> (*read)(const std::filesystem::path& folder);
 };
 

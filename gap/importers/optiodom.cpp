@@ -12,39 +12,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace puckloop::gap::importers {
 
 namespace {
 
-struct Geometry {
-    double axle = 0, diameter_right = 0, diameter_left = 0, counts_a_turn = 0;
-
-    bool operator==(const Geometry&) const = default;
-};
-
-bool recognises(const std::filesystem::path& folder) {
-    for (const char* part : {"circular", "free"})
-        for (const auto& session : folders_in(folder / part))
-            if (!files_named(session, "", "_metadata.csv").empty()) return true;
-    return false;
-}
+/// Numbers of [nominal], by name.
+using Geometry = std::map<std::string, double>;
 
 /// Rows "key,value,..."; the diameters stand right, left.
 Geometry read_geometry(const std::filesystem::path& file) {
     Geometry g;
     double gear = 0, encoder = 0;
     for (const TextRow& row : read_rows(file, ',')) {
-        if (row.cells[0] == "Li") g.axle = number_in(file, row, 1);
+        if (row.cells[0] == "Li") g["robot.axle_length"] = number_in(file, row, 1);
         if (row.cells[0] == "ngear") gear = number_in(file, row, 1);
         if (row.cells[0] == "encRes") encoder = number_in(file, row, 1);
-        if (row.cells[0] == "Di")
-            g.diameter_right = number_in(file, row, 1), g.diameter_left = number_in(file, row, 2);
+        if (row.cells[0] != "Di") continue;
+        g["robot.wheel_radius_right"] = number_in(file, row, 1) / 2;
+        g["robot.wheel_radius_left"] = number_in(file, row, 2) / 2;
     }
-    g.counts_a_turn = gear * encoder;
-    if (!(g.axle > 0 && g.diameter_right > 0 && g.diameter_left > 0 && g.counts_a_turn > 0))
+    g["robot.steps_per_turn"] = gear * encoder;
+    if (g.size() < 4 || std::ranges::any_of(g, [](const auto& one) { return !(one.second > 0); }))
         throw InputError(file.string(), "", "lacks the nominal geometry", "rows Li, Di, ngear and encRes");
+    g["inverse_friction"] = 0.0;
     return g;
 }
 
@@ -93,25 +86,19 @@ WrittenExperiment read_part(const std::filesystem::path& folder, const char* par
         "sliding at each jump of its stepper motors is off.";
     e.source = "github.com/sousarbarb/optiodom";
     e.licence = "MIT";
-    Geometry first;
-    for (const auto& session : folders_in(folder / part)) {
-        const auto metadata = files_named(session, "", "_metadata.csv");
+    for (const auto& session : paths_like(folder / part, "*")) {
+        if (!std::filesystem::is_directory(session)) continue;
+        const auto metadata = paths_like(session, "*_metadata.csv");
         if (metadata.empty())
             throw InputError(session.string(), "", "has no metadata", "<session>_metadata.csv");
-        const Geometry g = read_geometry(metadata.front());
-        if (e.runs.empty()) first = g;
-        if (!(g == first))
+        const Geometry geometry = read_geometry(metadata.front());
+        if (e.runs.empty()) e.nominal = geometry;
+        if (geometry != e.nominal)
             throw InputError(metadata.front().string(), "", "tells another robot than the sessions before",
                              "one nominal geometry");
-        for (const auto& file : files_named(session, "", ".csv"))
-            if (file.filename().string().find("_run-") != std::string::npos)
-                e.runs.push_back(read_run(file, session.filename().string()));
+        for (const auto& file : paths_like(session, "*_run-*.csv"))
+            e.runs.push_back(read_run(file, session.filename().string()));
     }
-    e.nominal = {{"robot.wheel_radius_right", first.diameter_right / 2},
-                 {"robot.wheel_radius_left", first.diameter_left / 2},
-                 {"robot.axle_length", first.axle},
-                 {"robot.steps_per_turn", first.counts_a_turn},
-                 {"inverse_friction", 0.0}};
     return e;
 }
 
@@ -129,6 +116,6 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 const Importer kOptiodom{"optiodom_diffdrive",
                          "wheel counts and motion capture of a differential-drive robot",
-                         "circular/ or free/ with *_metadata.csv", recognises, read};
+                         "circular/ or free/ with *_metadata.csv", "@(circular|free)/*/*_metadata.csv", read};
 
 }  // namespace puckloop::gap::importers

@@ -10,36 +10,23 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace puckloop::gap::importers {
 
 namespace {
 
-constexpr const char* kBeacons = "landmark.csv";
+constexpr const char* kPositions = "(X*).csv";
 constexpr double kHeading = std::numbers::pi / 2;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kQuantum = 0.1 * kDegree;
 
-bool recognises(const std::filesystem::path& folder) {
-    return std::filesystem::is_regular_file(folder / kBeacons) && !files_named(folder, "(X", ").csv").empty();
-}
-
-/// The number after `letter` in a name such as "(X1.5,Y3.0).csv".
-double coordinate(const std::filesystem::path& file, char letter) {
-    const std::string name = file.filename().string();
-    const auto at = name.find(letter);
-    double value = 0;
-    if (at == std::string::npos ||
-        std::from_chars(name.data() + at + 1, name.data() + name.size(), value).ec != std::errc())
-        throw InputError(file.string(), "", "does not tell the position in its name", "(X1.5,Y3.0).csv");
-    return value;
-}
-
 WrittenRun read_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
-    const double x = coordinate(file, 'X'), y = coordinate(file, 'Y');
+    double x = 0, y = 0;
+    if (std::sscanf(file.filename().c_str(), "(X%lf,Y%lf).csv", &x, &y) != 2)
+        throw InputError(file.string(), "", "does not tell the position in its name", "(X1.5,Y3.0).csv");
     const auto table = read_numbers(file, ',', beacons[0].size());
     WrittenRun run;
     run.name = fmt::format("x{}_y{}", x, y);
@@ -58,7 +45,7 @@ WrittenRun read_run(const std::filesystem::path& file, const std::vector<std::ve
 }
 
 std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
-    const auto beacons = read_numbers(folder / kBeacons, ',', 2);
+    const auto beacons = read_numbers(folder / "landmark.csv", ',', 2);
     WrittenExperiment e;
     e.folder = "roh_ir_bearing";
     e.kind = "rab";
@@ -70,7 +57,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.source = "github.com/sunglok/TriangulationToolbox; Roh 2010";
     e.licence = "BSD-2";
     e.instruments.push_back({"bearing_rad", NAN, NAN, kQuantum});
-    for (const auto& file : files_named(folder, "(X", ").csv"))
+    for (const auto& file : paths_like(folder, kPositions))
         e.runs.push_back(read_run(file, beacons));
     return {e};
 }
@@ -78,6 +65,6 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 }  // namespace
 
 const Importer kRohBearing{"roh_ir_bearing", "bearings to infra-red beacons",
-                           "landmark.csv and (X..,Y..).csv", recognises, read};
+                           "landmark.csv and (X..,Y..).csv", kPositions, read};
 
 }  // namespace puckloop::gap::importers

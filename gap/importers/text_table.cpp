@@ -4,6 +4,7 @@
 #include "base/error.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,26 +54,21 @@ std::vector<std::vector<double>> read_numbers(const std::filesystem::path& file,
     return table;
 }
 
-std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder, const std::string& begin,
-                                               const std::string& end) {
-    std::vector<std::filesystem::path> files;
-    if (!std::filesystem::is_directory(folder)) return files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string name = entry.path().filename().string();
-        if (entry.is_regular_file() && name.starts_with(begin) && name.ends_with(end))
-            files.push_back(entry.path());
+std::vector<std::filesystem::path> paths_like(const std::filesystem::path& folder,
+                                              const std::filesystem::path& pattern) {
+    std::vector<std::filesystem::path> found{folder};
+    for (const auto& name : pattern) {
+        std::vector<std::filesystem::path> deeper;
+        for (const auto& parent : found) {
+            if (!std::filesystem::is_directory(parent)) continue;
+            for (const auto& entry : std::filesystem::directory_iterator(parent))
+                if (fnmatch(name.c_str(), entry.path().filename().c_str(), FNM_EXTMATCH) == 0)
+                    deeper.push_back(entry.path());
+        }
+        found = std::move(deeper);
     }
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
-std::vector<std::filesystem::path> folders_in(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> folders;
-    if (!std::filesystem::is_directory(folder)) return folders;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.is_directory()) folders.push_back(entry.path());
-    std::sort(folders.begin(), folders.end());
-    return folders;
+    std::sort(found.begin(), found.end());
+    return found;
 }
 
 }  // namespace puckloop::gap::importers

@@ -24,10 +24,8 @@ double number_in(const std::filesystem::path& file, const TextRow& row, std::siz
 std::vector<std::vector<double>> read_numbers(const std::filesystem::path& file, char separator,
                                               std::size_t columns, std::size_t header_rows = 0);
 
-/// Files of a folder whose name begins and ends as given, sorted by name.
-std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder, const std::string& begin,
-                                               const std::string& end);
-/// Sub-folders, sorted by name.
-std::vector<std::filesystem::path> folders_in(const std::filesystem::path& folder);
+/// Files and folders below `folder` that a pattern fits, sorted: "circular/*/*_metadata.csv".
+std::vector<std::filesystem::path> paths_like(const std::filesystem::path& folder,
+                                              const std::filesystem::path& pattern);
 
 }  // namespace puckloop::gap::importers

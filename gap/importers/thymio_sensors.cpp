@@ -22,14 +22,10 @@ namespace puckloop::gap::importers {
 
 namespace {
 
+constexpr const char *kProximity = "proximity_sensor*.csv", *kGround = "ground_sensor_readings*.csv";
 constexpr double kGroundScale = 1000;        // counts of a Thymio ground sensor at most
 constexpr double kCountsPerG = 23;           // of a Thymio II's accelerometer, by its makers
 constexpr double kSmallestReading = 1e-100;  // the desk file holds denormal numbers where cells were empty
-
-bool recognises(const std::filesystem::path& folder) {
-    return !files_named(folder, "proximity_sensor", ".csv").empty() ||
-           !files_named(folder, "ground_sensor_readings", ".csv").empty();
-}
 
 WrittenExperiment described(const char* folder, const char* kind, const char* title,
                             const char* description) {
@@ -142,7 +138,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         "thymio_proximity", "proximity", "Thymio II proximity sensors in light and darkness",
         "Three sensors, distances 11 to 0 cm in falling order, 100 readings each: distance and order of "
         "measuring cannot be told apart, and the readings of one placement share its error.");
-    for (const auto& file : files_named(folder, "proximity_sensor", ".csv"))
+    for (const auto& file : paths_like(folder, kProximity))
         proximity.runs.push_back(proximity_run(file));
     proximity.instruments.push_back({"reading", 0, NAN, 1});
     WrittenExperiment ground =
@@ -150,7 +146,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
                   "No grey of any surface is given. The left sensor's mean over a surface stands for it, so "
                   "what is found compares the right sensor with the left one and directions with each other, "
                   "not floors with truth.");
-    for (const auto& file : files_named(folder, "ground_sensor_readings", ".csv"))
+    for (const auto& file : paths_like(folder, kGround))
         read_ground(file, ground.runs);
     add_reference(ground.runs);
     ground.nominal = {{"ground.black", 0}, {"ground.white", kGroundScale}, {"ground.saturation", 1023}};
@@ -159,7 +155,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         described("thymio_accelerometer", "accelerometer", "Thymio II accelerometer while driving",
                   "Counts of 1/23 g. What the robot did is known only from the files' names, so there is no "
                   "true acceleration: rest on level ground is assumed.");
-    for (const auto& file : files_named(folder, "acc_", ".csv"))
+    for (const auto& file : paths_like(folder, "acc_*.csv"))
         acceleration.runs.push_back(accelerometer_run(file));
     acceleration.nominal = {{"accelerometer.zero", 0}, {"accelerometer.gain", kCountsPerG}};
     for (const char* axis : {"ax", "ay", "az"})
@@ -173,6 +169,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 const Importer kThymioSensors{"thymio_sensors_resilient-swarms",
                               "Thymio II proximity, ground and acceleration",
-                              "proximity_sensor*.csv or ground_sensor_readings*.csv", recognises, read};
+                              "proximity_sensor*.csv or ground_sensor_readings*.csv",
+                              "@(proximity_sensor|ground_sensor_readings)*.csv", read};
 
 }  // namespace puckloop::gap::importers

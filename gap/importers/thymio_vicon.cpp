@@ -1,10 +1,6 @@
 // thymio_ground_vicon_epfl: a Thymio II driving under motion capture; its published odometry pose beside the
 // true one. From epfl-mobots/thymio-ground-localisation, LGPL-3.
-//
-// 1. The set has odometry poses, not wheel counts: counts of 0.01 mm are reckoned back from successive poses
-// with an axle of 95 mm, so scale and axle found here are corrections to the authors' odometry. 2. Rows have
-// no times; 1/3 s apart is what the set's description says. 3. The ground sensors' floor (a printed picture)
-// is not in the set, so there is no truth to hold their readings against: they are left out.
+// Rows have no times; 1/3 s apart is what the set's description says.
 
 #include "base/error.h"
 #include "gap/importers/importers.h"
@@ -19,22 +15,11 @@ namespace puckloop::gap::importers {
 
 namespace {
 
+constexpr const char* kRuns = "*/odom_quaternion.txt";
 constexpr double kPeriod = 1.0 / 3;     // s
 constexpr double kAxle = 0.095;         // m, of a Thymio II
 constexpr double kWheelRadius = 0.022;  // m
 constexpr double kCount = 1e-5;         // m a reckoned count
-
-bool complete(const std::filesystem::path& run) {
-    for (const char* file : {"gt.txt", "odom_pose.txt", "odom_quaternion.txt"})
-        if (!std::filesystem::is_regular_file(run / file)) return false;
-    return true;
-}
-
-bool recognises(const std::filesystem::path& folder) {
-    for (const auto& run : folders_in(folder))
-        if (complete(run)) return true;
-    return false;
-}
 
 /// What the wheels must have travelled for the odometry to move as it did, in counts.
 std::pair<std::vector<double>, std::vector<double>>
@@ -90,14 +75,17 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
                  {"robot.axle_length", kAxle},
                  {"inverse_friction", 0.0},
                  {"robot.steps_per_turn", 2 * std::numbers::pi * kWheelRadius / kCount}};
-    for (const auto& run : folders_in(folder))
-        if (complete(run)) e.runs.push_back(read_run(run));
+    for (const auto& turns : paths_like(folder, kRuns)) {
+        const auto run = turns.parent_path();
+        if (std::filesystem::exists(run / "gt.txt") && std::filesystem::exists(run / "odom_pose.txt"))
+            e.runs.push_back(read_run(run));
+    }
     return {e};
 }
 
 }  // namespace
 
 const Importer kThymioVicon{"thymio_ground_vicon_epfl", "Thymio II odometry under motion capture",
-                            "folders with gt.txt, odom_pose.txt, odom_quaternion.txt", recognises, read};
+                            "folders with gt.txt, odom_pose.txt, odom_quaternion.txt", kRuns, read};
 
 }  // namespace puckloop::gap::importers

@@ -1,11 +1,8 @@
 // unifr_epuck2_timing: durations of the stages of an e-puck2 host loop, over WiFi and on a Pi-puck, as JSON
 // lists of seconds. From davidfrisch/UNIFR_API_EPUCK, GPL-3.
 //
-// 1. Arrival times are the running sum of the stages of each loop: what the host was busy or waiting; pauses
-// between loops are not in the set. 2. No nominal period is given: the mean loop of the run, longest 1 % left
-// out, stands for it, so that rate errors cannot be found, only jitter, tails and trends. 3. Lists shorter
-// than the loop count (image and sensor packets by turns, in unknown order) cannot be lined up and are left
-// out, as are the start-up times, which are no loop.
+// Lists shorter than the loop count (image and sensor packets by turns, in unknown order) cannot be lined up
+// and are left out, as are the start-up times, which are no loop.
 
 #include "base/error.h"
 #include "gap/importers/importers.h"
@@ -25,15 +22,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kFiles = "1_go_on_benchmark/data/results_go_on_*.json";
 constexpr double kLongestLeftOut = 0.01;  // share of the loops
-
-std::filesystem::path data_folder(const std::filesystem::path& folder) {
-    return folder / "1_go_on_benchmark" / "data";
-}
-
-bool recognises(const std::filesystem::path& folder) {
-    return !files_named(data_folder(folder), "results_go_on_", ".json").empty();
-}
 
 /// Total of each loop, over the lists that hold one value a loop.
 std::vector<double> loops_of(const std::filesystem::path& file) {
@@ -96,7 +86,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         e.source = "github.com/davidfrisch/UNIFR_API_EPUCK";
         e.licence = "GPL-3";
         for (const auto& file :
-             files_named(data_folder(folder), fmt::format("results_go_on_{}", part), ".json"))
+             paths_like(folder, fmt::format("1_go_on_benchmark/data/results_go_on_{}*.json", part)))
             e.runs.push_back(read_run(file));
         if (!e.runs.empty()) all.push_back(e);
     }
@@ -105,7 +95,6 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 }  // namespace
 
-const Importer kUnifrTiming{"unifr_epuck2_timing", "durations of an e-puck2 host loop",
-                            "1_go_on_benchmark/data/results_go_on_*.json", recognises, read};
+const Importer kUnifrTiming{"unifr_epuck2_timing", "durations of an e-puck2 host loop", kFiles, kFiles, read};
 
 }  // namespace puckloop::gap::importers
