@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
-#include <numeric>
+#include <set>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -24,15 +26,15 @@ constexpr double kAllBut = 0.01;          // of the stretches: rows may be missi
 constexpr double kMissing = -1e300;       // as a value that is alike in all rows
 constexpr double kSurely = -13.8;         // ln of the chance that readings agree so, one in a million
 
-/// Rows [from, from + rows) of a chain, all of the same.
+/// Rows of a run that belong together in order of time: those of each sensor.
+using Chain = std::vector<std::size_t>;
+
+/// Rows behind each other in a chain, all of the same.
 struct Block {
-    std::size_t rows;
+    Chain rows;
     std::vector<double> what, reading;
     bool whole;  ///< the chain goes on at both ends
 };
-
-/// Rows of a run that belong together in order of time: those of each sensor.
-using Chain = std::vector<std::size_t>;
 
 std::vector<Chain> chains_of(const Run& run) {
     std::map<double, Chain> by_sensor;
@@ -66,8 +68,7 @@ class Repeats {
             if (info.role == Role::Truth || info.role == Role::Stimulus) set_.emplace_back(info.name);
         }
         for (const Run& run : experiment.runs)
-            for (const Chain& chain : chains_of(run))
-                take(run, chain);
+            std::ranges::move(blocks_of(run), std::back_inserter(blocks_));
     }
 
     /// How often each reading stands in a row; 1: as often as it was measured.
@@ -78,41 +79,32 @@ class Repeats {
     }
 
     /// Rows that only repeat the one before.
-    std::vector<std::size_t> again(const Run& run, std::size_t times) const {
-        std::vector<std::size_t> rows;
-        for (const Chain& chain : chains_of(run))
-            for (std::size_t from = 0; from < chain.size();) {
-                const std::size_t to = end_of(run, chain, from);
-                for (std::size_t k = from; k < to; ++k)
-                    if ((k - from) % times != 0) rows.push_back(chain[k]);
-                from = to;
-            }
-        std::ranges::sort(rows);
+    std::set<std::size_t> again(const Run& run, std::size_t times) const {
+        std::set<std::size_t> rows;
+        for (const Block& block : blocks_of(run))
+            for (std::size_t k = 0; k < block.rows.size(); ++k)
+                if (k % times != 0) rows.insert(block.rows[k]);
         return rows;
     }
 
   private:
-    std::size_t end_of(const Run& run, const Chain& chain, std::size_t from) const {
-        const auto same = [&](std::size_t k) {
-            const std::size_t row = chain[k];
-            // A row whose clock stands as well is a copy (drop_copies).
-            const bool later = !run.has("t_s") || run.column("t_s")[row] != run.column("t_s")[chain[k - 1]];
-            return later && row_of(run, readings_, row) == row_of(run, readings_, chain[from]) &&
-                   row_of(run, set_, row) == row_of(run, set_, chain[from]);
-        };
-        std::size_t to = from + 1;
-        while (to < chain.size() && same(to))
-            ++to;
-        return to;
-    }
-
-    void take(const Run& run, const Chain& chain) {
-        for (std::size_t from = 0; from < chain.size();) {
-            const std::size_t to = end_of(run, chain, from);
-            blocks_.push_back({to - from, row_of(run, set_, chain[from]), row_of(run, readings_, chain[from]),
-                               from > 0 && to < chain.size()});
-            from = to;
+    std::vector<Block> blocks_of(const Run& run) const {
+        std::vector<Block> blocks;
+        const auto& time = run.column("t_s");
+        for (const Chain& chain : chains_of(run)) {
+            const std::size_t first = blocks.size();
+            for (std::size_t k = 0; k < chain.size(); ++k) {
+                auto what = row_of(run, set_, chain[k]), reading = row_of(run, readings_, chain[k]);
+                // A row whose clock stands as well is a copy (drop_copies).
+                const bool later = k > 0 && (time.empty() || time[chain[k]] != time[chain[k - 1]]);
+                if (later && what == blocks.back().what && reading == blocks.back().reading)
+                    blocks.back().rows.push_back(chain[k]);
+                else
+                    blocks.push_back({{chain[k]}, std::move(what), std::move(reading), true});
+            }
+            blocks[first].whole = blocks.back().whole = false;
         }
+        return blocks;
     }
 
     bool are_multiples_of(std::size_t times) const {
@@ -120,7 +112,7 @@ class Repeats {
         for (const Block& block : blocks_) {
             if (!block.whole) continue;
             ++whole;
-            others += block.rows % times != 0 ? 1 : 0;
+            others += block.rows.size() % times != 0 ? 1 : 0;
         }
         return whole >= kLeastBlocks && static_cast<double>(others) <= kAllBut * static_cast<double>(whole);
     }
@@ -131,10 +123,9 @@ class Repeats {
         std::map<std::vector<double>, std::map<std::vector<double>, double>> blocks;
         std::map<std::vector<double>, double> repeated;
         for (const Block& block : blocks_) {
-            const auto own = static_cast<double>(block.rows / times);
-            blocks[block.what][block.reading] += std::max(own, 1.0);
-            repeated[block.what] += static_cast<double>(block.rows) -
-                                    std::ceil(static_cast<double>(block.rows) / static_cast<double>(times));
+            const std::size_t rows = block.rows.size(), measured = (rows + times - 1) / times;
+            blocks[block.what][block.reading] += static_cast<double>(std::max<std::size_t>(rows / times, 1));
+            repeated[block.what] += static_cast<double>(rows - measured);
         }
         double sum = 0.0;
         for (const auto& [what, readings] : blocks) {
@@ -166,7 +157,7 @@ void drop_repeats(Experiment& experiment) {
         const auto again = repeats.again(run, times);
         rows += run.rows;
         gone += again.size();
-        take_out(run, {again.begin(), again.end()});
+        take_out(run, again);
     }
     experiment.caution(
         "each reading stands {} times in a row, which chance does not: logged again, not measured "
