@@ -1,5 +1,4 @@
 #include "gap/effects/effect.h"
-#include "gap/effects/tables.h"
 
 #include <algorithm>
 #include <utility>

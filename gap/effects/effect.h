@@ -47,6 +47,16 @@ struct Effect {
     const char* mistaken = nullptr;
 };
 
+/// Tables of the catalogue. An effect that acts in several kinds stands in the first of them. Above each: its
+/// mechanism and equation.
+std::vector<Effect> motion_effects();
+std::vector<Effect> proximity_effects();
+std::vector<Effect> ground_effects();
+std::vector<Effect> accelerometer_effects();
+std::vector<Effect> microphone_effects();
+std::vector<Effect> rab_effects();
+std::vector<Effect> timing_effects();
+
 /// All of them, in the order of the sheet.
 std::span<const Effect> catalogue();
 std::vector<const Effect*> effects_of(Kind kind);

@@ -1,6 +1,6 @@
 // Range and bearing, and frames of the control loop.
 
-#include "gap/effects/tables.h"
+#include "gap/effects/effect.h"
 
 namespace puckloop::gap {
 

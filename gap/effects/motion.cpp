@@ -1,6 +1,6 @@
 // Drives: wheels, steppers, commands, floor; at the end what the tracker does to them.
 
-#include "gap/effects/tables.h"
+#include "gap/effects/effect.h"
 
 namespace puckloop::gap {
 

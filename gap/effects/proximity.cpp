@@ -1,6 +1,6 @@
 // Infra-red proximity sensors.
 
-#include "gap/effects/tables.h"
+#include "gap/effects/effect.h"
 
 namespace puckloop::gap {
 

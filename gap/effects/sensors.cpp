@@ -1,6 +1,6 @@
 // Floor sensors, accelerometer, microphones.
 
-#include "gap/effects/tables.h"
+#include "gap/effects/effect.h"
 
 namespace puckloop::gap {
 

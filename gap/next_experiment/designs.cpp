@@ -1,6 +1,5 @@
 #include "gap/next_experiment/designs.h"
 
-#include "gap/data/columns.h"
 #include "gap/models/wheel_curve.h"
 #include "physics/description/robot_constants.h"
 
@@ -45,13 +44,9 @@ class Table {
     std::vector<std::vector<double>*> columns_;
 };
 
-/// What a kind of experiment can be varied in, written into an experiment's table.
+/// A design of each list of parts, what a kind of experiment can be varied in; `fill` writes its rows.
 template <class Part>
-using Fill = void (*)(Experiment&, const std::vector<Part>&);
-
-/// A design of each list of parts.
-template <class Part>
-std::vector<Design> filled(const Experiment& like, Fill<Part> fill,
+std::vector<Design> filled(const Experiment& like, void (*fill)(Experiment&, const std::vector<Part>&),
                            const std::vector<std::pair<const char*, std::vector<Part>>>& looks) {
     std::vector<Design> all;
     for (const auto& [what, parts] : looks) {
