@@ -6,8 +6,7 @@
 #include "gap/data/columns.h"
 #include "gap/data/csv.h"
 #include "gap/data/problems.h"
-#include "gap/sync/frames.h"
-#include "gap/sync/pauses.h"
+#include "gap/sync/sync.h"
 #include "gap/validate/checks.h"
 #include "scenarios/reader.h"
 

@@ -9,7 +9,7 @@
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/stats/robust.h"
-#include "gap/sync/pauses.h"
+#include "gap/sync/sync.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,9 @@
-#include "gap/sync/clocks.h"
+// Do tracker and counters tell the same time? Two loggers that were started by hand, or whose clocks differ
+// by a few parts in a thousand, make an error of heading that is turn rate times lateness: it looks like
+// slip.
 
 #include "gap/sync/counted_path.h"
+#include "gap/sync/sync.h"
 
 #include <Eigen/Dense>
 

@@ -1,8 +1,12 @@
-#include "gap/sync/frames.h"
+// A tracker that takes pictures at a rate of its own gives in each row the pose of its last picture: rows are
+// late by a part of a frame that grows from row to row and falls back, a sawtooth. Errors of way are speed
+// times lateness, not noise: few large ones one way, many small ones the other, which pull a fit that does
+// not believe in large ones. Counters that are polled at a rate of their own make the same with the sign
+// turned.
 
 #include "gap/stats/robust.h"
-#include "gap/sync/clocks.h"
 #include "gap/sync/counted_path.h"
+#include "gap/sync/sync.h"
 
 #include <Eigen/Dense>
 
@@ -10,10 +14,8 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <iterator>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <utility>
 
 namespace puckloop::gap {
@@ -43,8 +45,7 @@ struct Disagreement {
     /// Of way or heading.
     struct Sum {
         std::vector<double> rate;   ///< in deviations per s; a row each
-        std::vector<double> error;  ///< of the change into a row, in deviations; 0 where it is left out
-        std::vector<char> counts;   ///< is it not?
+        std::vector<double> error;  ///< of the change into a row, in deviations; NaN where it is left out
     };
     std::vector<double> time;  ///< s of the rows
     double step = 0.0;         ///< s between rows
@@ -108,13 +109,10 @@ Disagreement::Sum unexplained(const std::vector<double>& seen, const Eigen::Matr
     sum.rate = std::move(rate);
     for (double& one : sum.rate)
         one *= share[0] / sd;
-    sum.error.assign(seen.size(), 0.0);
-    sum.counts.assign(seen.size(), 0);
+    sum.error.assign(seen.size(), NAN);
     for (std::size_t i = 1; i < seen.size(); ++i) {
         const double error = rest[static_cast<Eigen::Index>(i)] / sd;
-        if (!(std::abs(error) <= kOutlier)) continue;
-        sum.error[i] = error;
-        sum.counts[i] = 1;
+        if (std::abs(error) <= kOutlier) sum.error[i] = error;
     }
     return sum;
 }
@@ -148,12 +146,13 @@ Number effect_of(const Disagreement::Sum& sum, std::size_t row, const Number& be
     return sum.rate[row - 1] * before - sum.rate[row] * here;
 }
 
-/// Least squares of the errors on a sawtooth.
-struct Match {
-    double gain = 0.0, size = 0.0;  ///< sum of squares that it takes away; s
+struct Sawtooth {
+    double beat = 0.0, phase = 0.0;  ///< Hz; of a turn
+    double gain = 0.0, size = 0.0;   ///< sum of squares that it takes away; s
 };
 
-Match match_sawtooth(const Disagreement& all, const Stretch& part, double beat, double phase) {
+/// Least squares of the errors on a sawtooth.
+Sawtooth matched(const Disagreement& all, const Stretch& part, double beat, double phase) {
     double product = 0.0, power = 1e-12;
     for (const Disagreement::Sum& sum : all.sums) {
         double before = sawtooth(beat * all.time[part.from] + phase);
@@ -161,12 +160,12 @@ Match match_sawtooth(const Disagreement& all, const Stretch& part, double beat, 
             const double here = sawtooth(beat * all.time[i] + phase);
             const double one = effect_of(sum, i, before, here);
             before = here;
-            if (sum.counts[i] == 0) continue;
+            if (std::isnan(sum.error[i])) continue;
             product += one * sum.error[i];
             power += one * one;
         }
     }
-    return {product * product / power, product / power};
+    return {beat, phase, product * product / power, product / power};
 }
 
 struct Sinusoid {
@@ -191,7 +190,7 @@ Sinusoid best_sinusoid(const Disagreement& all, const Stretch& part, double step
         for (const Disagreement::Sum& sum : all.sums)
             for (std::size_t i = 1; i < n; ++i) {
                 const std::size_t row = part.from + i;
-                if (sum.counts[row] == 0) continue;
+                if (std::isnan(sum.error[row])) continue;
                 const std::complex<double> one = effect_of(sum, row, angle[i - 1], angle[i]);
                 power(0, 0) += one.real() * one.real();
                 power(0, 1) += one.real() * one.imag();
@@ -208,25 +207,19 @@ Sinusoid best_sinusoid(const Disagreement& all, const Stretch& part, double step
     return best;
 }
 
-struct Sawtooth {
-    double beat = 0.0, phase = 0.0;
-    Match match;
-};
-
 /// The best sawtooth around one. A change of frequency turns the phase about the middle, not about time
 /// nought.
 Sawtooth polished(const Disagreement& all, const Stretch& part, Sawtooth best, double step) {
     const double middle = (all.time[part.from] + all.time[part.to - 1]) / 2;
     double turn = kPhaseStep;
-    best.match = match_sawtooth(all, part, best.beat, best.phase);
+    best = matched(all, part, best.beat, best.phase);
     for (int round = 0; round < kRounds; ++round, step /= 2, turn /= 2) {
         const Sawtooth centre = best;
         for (int i = -kReach; i <= kReach; ++i)
             for (int j = -kReach; j <= kReach; ++j) {
-                const double beat = centre.beat + i * step,
-                             phase = centre.phase + j * turn - i * step * middle;
-                const Match match = match_sawtooth(all, part, beat, phase);
-                if (match.gain > best.match.gain) best = {beat, phase, match};
+                const Sawtooth one =
+                    matched(all, part, centre.beat + i * step, centre.phase + j * turn - i * step * middle);
+                if (one.gain > best.gain) best = one;
             }
     }
     return best;
@@ -241,10 +234,8 @@ Stretch middle_rows(std::size_t rows, std::size_t wanted) {
 /// The sawtooth that a sinusoid in the middle rows is the first harmonic of, followed to all rows.
 /// `falls`: it falls slowly and jumps up.
 Sawtooth followed(const Disagreement& all, const Sinusoid& first, double step, bool falls) {
-    Sawtooth best;
-    best.beat = first.beat;
-    best.phase = std::atan2(falls ? first.cosine : -first.cosine, falls ? first.sine : -first.sine) /
-                 (2 * std::numbers::pi);
+    const double sign = falls ? 1.0 : -1.0;
+    Sawtooth best{first.beat, std::atan2(sign * first.cosine, sign * first.sine) / (2 * std::numbers::pi)};
     for (std::size_t rows = kSearched;; rows *= 2, step /= 2) {
         const Stretch part = middle_rows(all.rows(), rows);
         best = polished(all, part, best, step);
@@ -257,7 +248,7 @@ double deviance(const Disagreement& all, const Stretch& part, double gain) {
     double squares = 0.0, count = 0.0;
     for (const Disagreement::Sum& sum : all.sums)
         for (std::size_t i = part.from + 1; i < part.to; ++i)
-            if (sum.counts[i] != 0) {
+            if (!std::isnan(sum.error[i])) {
                 squares += sum.error[i] * sum.error[i];
                 count += 1.0;
             }
@@ -273,17 +264,17 @@ FrameBeat beat_of(const CountedPath& path) {
     const Sinusoid first = best_sinusoid(all, searched, finer);
     if (!(first.gain > 0)) return {};
     const Sawtooth up = followed(all, first, finer, false), down = followed(all, first, finer, true);
-    const Sawtooth& best = up.match.gain > down.match.gain ? up : down;
-    FrameBeat beat{best.match.size, best.beat, best.phase, deviance(all, whole, best.match.gain), false};
+    const Sawtooth& best = up.gain > down.gain ? up : down;
+    FrameBeat beat{best.size, best.beat, best.phase, deviance(all, whole, best.gain), false};
     if (beat.evidence < kEvidenceBesides) return beat;
-    const double there = deviance(all, searched, match_sawtooth(all, searched, best.beat, best.phase).gain);
+    const double there = deviance(all, searched, matched(all, searched, best.beat, best.phase).gain);
     if (there <= deviance(all, searched, first.gain)) return beat;
     const auto late = [&](std::size_t row) {
-        return best.match.size * sawtooth(best.beat * all.time[row] + best.phase);
+        return best.size * sawtooth(best.beat * all.time[row] + best.phase);
     };
     for (Disagreement::Sum& sum : all.sums)
         for (std::size_t i = 1; i < all.rows(); ++i)
-            if (sum.counts[i] != 0) sum.error[i] -= effect_of(sum, i, late(i - 1), late(i));
+            sum.error[i] -= effect_of(sum, i, late(i - 1), late(i));
     const double next = deviance(all, searched, best_sinusoid(all, searched, finer).gain);
     beat.clear =
         beat.evidence > kEvidence && there > kAlone * next && std::abs(beat.period) < kLongest * *step;
@@ -331,17 +322,13 @@ std::vector<FrameBeat> frame_beats(const Experiment& experiment) {
 }
 
 void align_times(Experiment& experiment) {
-    const std::size_t before = experiment.cautions.size();
-    align_clocks(experiment);
-    const auto beats = frame_beats(experiment);
+    Experiment aligned = experiment;
+    align_clocks(aligned);
     // In short runs frames pass for drift: without them the clocks are looked at anew.
-    std::vector<std::string> of_clocks(experiment.cautions.begin() + static_cast<std::ptrdiff_t>(before),
-                                       experiment.cautions.end());
-    experiment.cautions.resize(before);
-    if (align_frames(experiment, beats))
+    if (align_frames(experiment, frame_beats(aligned)))
         align_clocks(experiment);
     else
-        std::move(of_clocks.begin(), of_clocks.end(), std::back_inserter(experiment.cautions));
+        experiment = std::move(aligned);
 }
 
 }  // namespace puckloop::gap

@@ -1,4 +1,7 @@
-#include "gap/sync/pauses.h"
+// A control loop that has lost its robot's answers gives up, and begins anew some time later. Its frames then
+// count their periods from there: what came between is the program's doing, and no other frame shows it.
+
+#include "gap/sync/sync.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Clocks of tracker and counters that run apart are found and put right; robots that are merely wrong are not
 // taken for it.
 
-#include "gap/sync/clocks.h"
+#include "gap/sync/sync.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // Trackers that tell poses at frames of their own are found and put right; noise, wheels out of round and
 // clocks that drift are not taken for them.
 
-#include "gap/sync/frames.h"
+#include "gap/sync/sync.h"
 
 #include <catch2/catch.hpp>
 

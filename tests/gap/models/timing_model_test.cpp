@@ -1,6 +1,6 @@
 // The forward model of timing against frames made by other formulas.
 
-#include "gap/sync/pauses.h"
+#include "gap/sync/sync.h"
 #include "tests/gap/models/exact_tables.h"
 #include "tests/gap/models/made_table.h"
 
