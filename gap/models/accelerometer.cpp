@@ -26,18 +26,17 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
     explicit AccelerometerModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {});
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            std::vector<std::uint32_t> used;
-            observables_.push_back(rows.observable(kAxes[axis], NoiseKind::Carry, used));
             std::vector<double> pitch, roll, forward, left;
             Axis& one = axes_[axis];
-            rows.take(used, {{pitch, "pitch_rad"},
-                             {roll, "roll_rad"},
-                             {forward, "acceleration"},
-                             {left, "lateral"},
-                             {one.motor, "motor_speed"},
-                             {one.time, "t_s"},
-                             {one.session, "session"}});
-            for (std::size_t i = 0; i < used.size(); ++i) {
+            observables_.push_back(rows.observable(kAxes[axis], NoiseKind::Carry,
+                                                   {{pitch, "pitch_rad"},
+                                                    {roll, "roll_rad"},
+                                                    {forward, "acceleration"},
+                                                    {left, "lateral"},
+                                                    {one.motor, "motor_speed"},
+                                                    {one.time, "t_s"},
+                                                    {one.session, "session"}}));
+            for (std::size_t i = 0; i < pitch.size(); ++i) {
                 const double sp = std::sin(pitch[i]), cp = std::cos(pitch[i]), sr = std::sin(roll[i]),
                              cr = std::cos(roll[i]);
                 one.felt.push_back({-left[i] * cr / kGravity - cp * sr, -forward[i] * cp / kGravity - sp,
@@ -66,7 +65,7 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
                 double counts = now.zero + now.bias[axis] + now.gain * now.scale[axis] * seen;
                 for (const auto& [session, index] : session_bias_[axis])
                     if (one.session[i] == session) counts += v[index];
-                if (now.warmup != 0.0) counts += now.warmup * warmed(one.time[i], now.warmup_time);
+                counts += warmed(now.warmup, one.time[i], now.warmup_time);
                 p.mean[i] = counts * (1 - now.motor_sag * (one.motor[i] > 0 ? 1.0 : 0.0));
             }
             fill_rows(p.extra, p.mean.size(), now.vibration != 0.0,

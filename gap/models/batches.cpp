@@ -1,5 +1,7 @@
 #include "gap/models/batches.h"
 
+#include "gap/stats/robust.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -103,10 +105,9 @@ double place_by_waits(const Observable& o, std::size_t from, std::size_t to, dou
         const double before = (k < half ? early_jump : late_jump) - arrival[k];
         rest.push_back(o.y[k] - arrival[k] - (before - batch * std::floor(before / batch)));
     }
-    const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
-    std::nth_element(rest.begin(), middle, rest.end());
-    return deliver_fine(o, from, half, {batch, early_jump + *middle, *middle, *middle}, arrival, placed) +
-           deliver_fine(o, half, to, {batch, late_jump + *middle, *middle, *middle}, arrival, placed);
+    const double middle = stats::upper_median(std::move(rest));
+    return deliver_fine(o, from, half, {batch, early_jump + middle, middle, middle}, arrival, placed) +
+           deliver_fine(o, half, to, {batch, late_jump + middle, middle, middle}, arrival, placed);
 }
 
 /// The batch near by that the waits of stretches of `rows` beat with most, looked for in steps by which their

@@ -28,18 +28,17 @@ class GroundModel final : public ModelOf<Numbers> {
   public:
     explicit GroundModel(const Experiment& experiment) {
         const Rows rows(experiment, "sensor", {"grey", "reading"});
-        std::vector<std::uint32_t> used;
-        observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
         std::vector<double> sensor;
-        rows.take(used, {{grey_, "grey"},
-                         {along_, "grey_rate"},
-                         {across_, "grey_across"},
-                         {speed_, "speed"},
-                         {pitch_, "pitch_rad"},
-                         {acceleration_, "acceleration"},
-                         {ambient_, "ambient"},
-                         {time_, "t_s"},
-                         {sensor, "sensor"}});
+        observables_.push_back(rows.observable("reading", NoiseKind::Carry,
+                                               {{grey_, "grey"},
+                                                {along_, "grey_rate"},
+                                                {across_, "grey_across"},
+                                                {speed_, "speed"},
+                                                {pitch_, "pitch_rad"},
+                                                {acceleration_, "acceleration"},
+                                                {ambient_, "ambient"},
+                                                {time_, "t_s"},
+                                                {sensor, "sensor"}}));
         lay_track();
         sensor_ = whole(sensor);
         simulated("ground.", {"black", "white", "saturation", "height_slope", "x"});
@@ -72,8 +71,7 @@ class GroundModel final : public ModelOf<Numbers> {
                 now.raised + ground.x * std::sin(pitch_[i] + ground.acceleration_tilt * acceleration_[i]);
             double level =
                 (ground.black + (ground.white - ground.black) * grey) * (1 - ground.height_slope * lift);
-            if (ground.warmup_gain != 0.0)
-                level *= 1 + ground.warmup_gain * warmed(time_[i], ground.warmup_time);
+            level *= 1 + warmed(ground.warmup_gain, time_[i], ground.warmup_time);
             mean[i] = ground.gain[s] * level + ground.offset[s] + now.ambient_offset * ambient_[i];
         }
     }
@@ -81,30 +79,25 @@ class GroundModel final : public ModelOf<Numbers> {
   private:
     /// Way along each chain, by the mean of the speeds at both ends of a step.
     void lay_track() {
-        const Observable& o = observables_[0];
-        const std::size_t n = grey_.size();
-        way_.assign(n, 0.0);
-        first_.assign(n, 0);
-        last_.assign(n, 0);
-        for (std::size_t i = 0; i < n; ++i) {
-            const bool begins = i == 0 || o.starts[i] != 0;
-            first_[i] = begins ? i : first_[i - 1];
-            if (!begins) way_[i] = way_[i - 1] + (speed_[i] + speed_[i - 1]) / 2 * (time_[i] - time_[i - 1]);
-        }
-        for (std::size_t i = n; i-- > 0;)
-            last_[i] = i + 1 == n || first_[i + 1] == i + 1 ? i : last_[i + 1];
+        way_.assign(grey_.size(), 0.0);
+        for (std::size_t i = 1; i < way_.size(); ++i)
+            if (goes_on(i))
+                way_[i] = way_[i - 1] + (speed_[i] + speed_[i - 1]) / 2 * (time_[i] - time_[i - 1]);
     }
+
+    /// Is row i there, and of the same chain as the one before?
+    bool goes_on(std::size_t i) const { return i < way_.size() && observables_[0].starts[i] == 0; }
 
     /// Way driven in the time `lag` before row i; before the chain began, as if its speed had been the same.
     double way_since(std::size_t i, double lag) const {
         if (lag == 0.0) return 0.0;
         const double then = time_[i] - lag;
         std::size_t k = i;
-        while (lag > 0 && k > first_[i] && time_[k] > then)
+        while (lag > 0 && goes_on(k) && time_[k] > then)
             --k;
-        while (lag < 0 && k < last_[i] && time_[k + 1] <= then)
+        while (lag < 0 && goes_on(k + 1) && time_[k + 1] <= then)
             ++k;
-        if (k == last_[i] || time_[k] > then) return way_[i] - way_[k] + (time_[k] - then) * speed_[k];
+        if (!goes_on(k + 1) || time_[k] > then) return way_[i] - way_[k] + (time_[k] - then) * speed_[k];
         const double share = (then - time_[k]) / std::max(time_[k + 1] - time_[k], 1e-9);
         return way_[i] - way_[k] - share * (way_[k + 1] - way_[k]);
     }
@@ -122,12 +115,12 @@ class GroundModel final : public ModelOf<Numbers> {
         const double sense = speed_[i] < 0 ? -1.0 : 1.0;  // rows run the other way when the robot backs up
         std::size_t k = i;
         const auto behind = [&](std::size_t row) { return sense * (way_[row] - at) > 0; };
-        while (k > first_[i] && behind(k) && sense * (way_[k - 1] - way_[k]) <= 0 && !carried(k - 1))
+        while (goes_on(k) && behind(k) && sense * (way_[k - 1] - way_[k]) <= 0 && !carried(k - 1))
             --k;
-        while (k < last_[i] && !behind(k + 1) && sense * (way_[k + 1] - way_[k]) >= 0 && !carried(k))
+        while (goes_on(k + 1) && !behind(k + 1) && sense * (way_[k + 1] - way_[k]) >= 0 && !carried(k))
             ++k;
         const double rest = at - way_[k];
-        const double step = k < last_[i] ? way_[k + 1] - way_[k] : 0.0;
+        const double step = goes_on(k + 1) ? way_[k + 1] - way_[k] : 0.0;
         if (behind(k) || std::abs(step) < kStill || sense * (at - way_[k] - step) > 0)
             return grey_[k] + rest * along_[k];
         const double u = rest / step, v = 1 - u;  // Hermite's cubic through both greys and slopes
@@ -136,7 +129,6 @@ class GroundModel final : public ModelOf<Numbers> {
     }
 
     std::vector<double> way_;
-    std::vector<std::size_t> first_, last_;  // row of the chain that this row is in
     std::vector<double> grey_, along_, across_, speed_, pitch_, acceleration_, ambient_, time_;
     std::vector<int> sensor_;
 };

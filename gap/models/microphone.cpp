@@ -55,16 +55,15 @@ class MicrophoneModel final : public ModelOf<Numbers> {
   public:
     explicit MicrophoneModel(const Experiment& experiment) {
         const Rows rows(experiment, "mic", {"distance_m", "level"});
-        std::vector<std::uint32_t> used;
-        observables_.push_back(rows.observable("level", NoiseKind::Carry, used));
         std::vector<double> mic;
-        rows.take(used, {{distance_, "distance_m"},
-                         {angle_, "angle_rad"},
-                         {amplitude_, "amplitude"},
-                         {window_, "window", kWindow},
-                         {motor_, "motor_speed"},
-                         {time_, "t_s"},
-                         {mic, "mic"}});
+        observables_.push_back(rows.observable("level", NoiseKind::Carry,
+                                               {{distance_, "distance_m"},
+                                                {angle_, "angle_rad"},
+                                                {amplitude_, "amplitude"},
+                                                {window_, "window", kWindow},
+                                                {motor_, "motor_speed"},
+                                                {time_, "t_s"},
+                                                {mic, "mic"}}));
         mic_ = whole(mic);
         declare({{&Numbers::level, "microphone.level", "counts"}});
         simulated("microphone.", {"exponent", "directivity", "self_noise", "motor_noise", "window_lost"});
@@ -89,7 +88,7 @@ class MicrophoneModel final : public ModelOf<Numbers> {
             level *= std::pow(kReference / std::max(distance_[i], 1e-3), mic.exponent);
             level *=
                 (1 + mic.directivity * std::cos(angle_[i])) * now.gain[static_cast<std::size_t>(mic_[i])];
-            if (mic.warmup_gain != 0.0) level *= 1 + mic.warmup_gain * warmed(time_[i], mic.warmup_time);
+            level *= 1 + warmed(mic.warmup_gain, time_[i], mic.warmup_time);
             level += mic.self_noise + mic.motor_noise * std::abs(motor_[i]) / physics::kSpeedUnit;
             if (gaussian) {
                 window.become(window_[i], mic.window_lost);

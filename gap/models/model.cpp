@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "gap/overlay/overlay_names.h"
 #include "physics/description/parameters.h"
 
 #include <fmt/format.h>
@@ -13,11 +12,35 @@
 namespace puckloop::gap {
 
 namespace {
+
 /// "proximity.gain3" is one of "proximity.gain".
 bool is_numbered(std::string_view name, std::string_view group) {
     return name.size() > group.size() && name.starts_with(group) &&
            name.find_first_not_of("0123456789", group.size()) == std::string_view::npos;
 }
+
+/// A nominal number far outside anything built gives no prediction to start from.
+void check_finite(const Experiment& experiment, const Model& model) {
+    constexpr double kLargest = 1e11;  // clocks may count from 1970, in seconds
+    const Prediction prediction = model.predicted(model.neutral());
+    for (std::size_t o = 0; o < prediction.size(); ++o)
+        for (const double mean : prediction[o].mean)
+            if (!(std::abs(mean) < kLargest))
+                throw InputError((experiment.folder / "experiment.toml").string(), "",
+                                 fmt::format("the simulation gives {} = {:g} with these [nominal] numbers",
+                                             model.observables()[o].name, mean),
+                                 "numbers of a robot that can be built");
+}
+
+std::unique_ptr<Model> make_unchecked(const Experiment& experiment, MotionView view) {
+    if (experiment.kind == Kind::Motion) return make_motion_model(experiment, view);
+    static const std::map<Kind, std::unique_ptr<Model> (*)(const Experiment&)> others{
+        {Kind::Proximity, make_proximity_model},         {Kind::Rab, make_rab_model},
+        {Kind::Microphone, make_microphone_model},       {Kind::Ground, make_ground_model},
+        {Kind::Accelerometer, make_accelerometer_model}, {Kind::Timing, make_timing_model}};
+    return others.at(experiment.kind)(experiment);
+}
+
 }  // namespace
 
 double shown(const Predicted& predicted, std::size_t i) {
@@ -61,8 +84,7 @@ Prediction Model::predicted(const std::vector<double>& values) const {
 }
 
 std::size_t Model::add(std::string name, std::string unit, double neutral) {
-    const bool simulator = overlay_takes(name);
-    parameters_.push_back({std::move(name), std::move(unit), neutral, simulator});
+    parameters_.push_back({std::move(name), std::move(unit), neutral});
     return parameters_.size() - 1;
 }
 
@@ -91,32 +113,6 @@ void Model::apply_nominal(const Experiment& experiment) {
                          "one of docs/gap.md or of `puckloop run --list-parameters`");
     }
 }
-
-namespace {
-
-/// A nominal number far outside anything built gives no prediction to start from.
-void check_finite(const Experiment& experiment, const Model& model) {
-    constexpr double kLargest = 1e11;  // clocks may count from 1970, in seconds
-    const Prediction prediction = model.predicted(model.neutral());
-    for (std::size_t o = 0; o < prediction.size(); ++o)
-        for (const double mean : prediction[o].mean)
-            if (!(std::abs(mean) < kLargest))
-                throw InputError((experiment.folder / "experiment.toml").string(), "",
-                                 fmt::format("the simulation gives {} = {:g} with these [nominal] numbers",
-                                             model.observables()[o].name, mean),
-                                 "numbers of a robot that can be built");
-}
-
-std::unique_ptr<Model> make_unchecked(const Experiment& experiment, MotionView view) {
-    if (experiment.kind == Kind::Motion) return make_motion_model(experiment, view);
-    static const std::map<Kind, std::unique_ptr<Model> (*)(const Experiment&)> others{
-        {Kind::Proximity, make_proximity_model},         {Kind::Rab, make_rab_model},
-        {Kind::Microphone, make_microphone_model},       {Kind::Ground, make_ground_model},
-        {Kind::Accelerometer, make_accelerometer_model}, {Kind::Timing, make_timing_model}};
-    return others.at(experiment.kind)(experiment);
-}
-
-}  // namespace
 
 std::unique_ptr<Model> make_model(const Experiment& experiment, MotionView view) {
     auto model = make_unchecked(experiment, view);

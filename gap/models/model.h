@@ -87,7 +87,6 @@ double shown(const Predicted& predicted, std::size_t i);
 struct ModelParameter {
     std::string name, unit;
     double neutral = 0.0;
-    bool simulator = false;  ///< a physics parameter of this name exists
 };
 
 /// A parameter of how rows are looked at, not of what the simulator does: every fit moves it, as it does the

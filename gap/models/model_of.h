@@ -52,11 +52,7 @@ class ModelOf : public Model {
         }
     }
     /// Has no say with this experiment: a name that nothing asks for.
-    void hide(std::string_view name) {
-        ModelParameter& known = parameter(name);
-        known.name.insert(0, "-");
-        known.simulator = false;
-    }
+    void hide(std::string_view name) { parameter(name).name.insert(0, "-"); }
     /// `values` as parameters().
     Numbers numbers(const std::vector<double>& values) const {
         Numbers all = defaults_;
@@ -86,9 +82,9 @@ void fill_rows(std::vector<double>& values, std::size_t rows, bool asked, const 
         values[i] = value(i);
 }
 
-/// Share of its drift that something which warms up has made `time` s after power-up; `lasts`: s.
-inline double warmed(double time, double lasts) {
-    return 1 - std::exp(-std::max(time, 0.0) / lasts);
+/// What something that warms up adds `time` s after power-up of `drift` in the end; `lasts`: s.
+inline double warmed(double drift, double time, double lasts) {
+    return drift == 0.0 ? 0.0 : drift * (1 - std::exp(-std::max(time, 0.0) / lasts));
 }
 
 }  // namespace puckloop::gap

@@ -8,7 +8,6 @@
 // costs at friction mu. 2. Between rows speed is even. 3. No contacts with things.
 
 #include "gap/clean/quantum.h"
-#include "gap/models/keyed_cache.h"
 #include "gap/models/model_of.h"
 #include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
@@ -93,15 +92,9 @@ class MotionModel final : public ModelOf<Numbers> {
         }
         std::size_t first = 0;
         const double late = now.delay + (counted_ ? 0.0 : now.latency);
-        const auto driven = driven_.get({late}, [&] {
-            std::vector<Driven> all;
-            for (const Path& path : paths_)
-                all.push_back(driven_by(path, late));
-            return all;
-        });
-        for (std::size_t k = 0; k < paths_.size(); ++k) {
-            drive(now, paths_[k], (*driven)[k], late, first, out);
-            first += paths_[k].time.size();
+        for (const Path& path : paths_) {
+            drive(now, path, late, first, out);
+            first += path.time.size();
         }
         if (counted_) predict_counters(now, out);
     }
@@ -114,19 +107,18 @@ class MotionModel final : public ModelOf<Numbers> {
         const double metre = values.metre(), arm = values.robot.axle_length / 2;
         std::size_t row = 0;
         for (const Path& path : paths_) {
-            std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
+            std::array<CurveReader, 2> pacer{CurveReader(path.paced(0)), CurveReader(path.paced(1))};
             std::array<double, 2> last{pacer[0].at(path.time[0]), pacer[1].at(path.time[0])};
-            const std::vector<char> settled = driven_by(path, 0.0).settled;
             for (std::size_t i = 1; i < path.time.size(); ++i)
                 for (std::size_t w = 0; w < 2; ++w) {
                     const double way = along_[row + i] - along_[row + i - 1],
                                  turn = observables_[2].y[row + i] - observables_[2].y[row + i - 1];
                     const double steps = pacer[w].at(path.time[i]), asked = steps - last[w];
                     last[w] = steps;
-                    const double speed =
-                        std::abs(asked) / std::max(path.time[i] - path.time[i - 1], kSameTime);
-                    const bool starts =
-                        !counted_ && values.start_loss > 0 && settled[i] == 0;  // not at one speed
+                    const double span = path.time[i] - path.time[i - 1];
+                    const double speed = std::abs(asked) / std::max(span, kSameTime);
+                    const bool starts = !counted_ && values.start_loss > 0 &&
+                                        !settled(path, path.time[i - 1], span);  // not at one speed
                     if (speed < 1 || starts) continue;
                     auto& sums = moves[std::round(speed * 10) / 10];
                     sums[0] += std::abs(asked) * metre;
@@ -158,12 +150,11 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     void gather(const Experiment& experiment, const Rows& rows) {
-        std::vector<std::uint32_t> used;
-        const Observable base = rows.observable("x_m", NoiseKind::Level, used);
-        std::vector<double> x, y, theta, load, incline;
-        rows.take(
-            used,
-            {{x, "x_m"}, {y, "y_m"}, {theta, "theta_rad"}, {load, "load_kg"}, {incline, "incline_rad"}});
+        std::vector<double> y, theta, load, incline;
+        const Observable base =
+            rows.observable("x_m", NoiseKind::Level,
+                            {{y, "y_m"}, {theta, "theta_rad"}, {load, "load_kg"}, {incline, "incline_rad"}});
+        const std::vector<double>& x = base.y;
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
         exact_ = experiment.nominal_or("firmware.agenda", 1.0) == 0;
         const Motor motor = motor_of(experiment);
@@ -171,7 +162,7 @@ class MotionModel final : public ModelOf<Numbers> {
         double along = 0, across = 0, heading = 0;
         std::size_t from = 0;
         for (std::size_t i = 0; i < base.y.size(); ++i) {
-            const bool begins = i == 0 || base.run[i] != base.run[i - 1];
+            const bool begins = base.starts[i] != 0;
             if (begins) {
                 const Run& run = experiment.runs[base.run[i]];
                 Path path;
@@ -219,8 +210,6 @@ class MotionModel final : public ModelOf<Numbers> {
             // A place in the room and a heading are looked up anew in each row; of way along and across,
             // which are summed along measured headings, errors add up.
             one.steady = room() || o == 2;
-            for (std::size_t i = 1; i < one.y.size(); ++i)
-                one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
         if (counted_) gather_counters(experiment);
     }
@@ -283,13 +272,10 @@ class MotionModel final : public ModelOf<Numbers> {
     void gather_counters(const Experiment& experiment) {
         for (const auto& [counter, command] : kWheelColumns) {
             const Rows rows(experiment, "", {"t_s", counter});
-            std::vector<std::uint32_t> used;
-            Observable one = rows.observable(counter, NoiseKind::Level, used);
+            Observable one = rows.observable(counter, NoiseKind::Level, {});
             one.unit = "steps";
             one.instrument.quantum = 0.0;
             one.fixed_sd = kCounterSd;
-            for (std::size_t i = 0; i < one.y.size(); ++i)
-                one.starts[i] = i == 0 || one.run[i] != one.run[i - 1] ? 1 : 0;
             observables_.push_back(std::move(one));
         }
     }
@@ -322,7 +308,7 @@ class MotionModel final : public ModelOf<Numbers> {
                               kSpanWidth, true});
     }
 
-    void drive(const Numbers& values, const Path& path, const Driven& motors, double late, std::size_t first,
+    void drive(const Numbers& values, const Path& path, double late, std::size_t first,
                Prediction& out) const {
         const physics::BodyParameters& robot = values.robot;
         const double turn = 2 * std::numbers::pi / robot.steps_per_turn;
@@ -330,7 +316,10 @@ class MotionModel final : public ModelOf<Numbers> {
             turn * robot.wheel_radius_left * (1 + values.scale) * (1 - values.mismatch),
             turn * robot.wheel_radius_right * (1 + values.scale) * (1 + values.mismatch)};
         const double drop = counted_ ? 0.0 : values.drop;
-        std::array<double, 2> driven{}, geared{}, last_geared{};
+        std::array<CurveReader, 2> pacer{CurveReader(path.paced(0)), CurveReader(path.paced(1))};
+        std::array<CurveReader, 2> pieces{pacer};  // at a knot the last digit depends on where one comes from
+        std::array<CurveReader, 2> reader{CurveReader(path.wheel[0]), CurveReader(path.wheel[1])};
+        std::array<double, 2> last{}, last_asked{}, driven{}, geared{}, last_geared{};
         double heading = 0;
         std::vector<Step> steps(path.time.size());
         for (std::size_t i = 0; i < path.time.size(); ++i) {
@@ -340,10 +329,11 @@ class MotionModel final : public ModelOf<Numbers> {
             std::array<double, 2> moved{};
             double slips = 0.0;  // variance of the way that is lost, m2
             for (std::size_t w = 0; w < 2; ++w) {
-                const Driven::Wheel& wheel = motors.wheel[w];
-                const double asked = wheel.asked[i];
-                moves = moves || asked > kStill;
-                double change = wheel.steps[i];
+                const double made = reader[w].at(now), asked = pacer[w].at(now);
+                moves = moves || (i > 0 && std::abs(asked - last_asked[w]) > kStill);
+                double change = i == 0 ? 0.0 : made - last[w];
+                last[w] = made;
+                last_asked[w] = asked;
                 if (change != 0.0 && span > 0) {
                     const double rate = std::abs(change) / span;
                     if (robot.step_loss_speed > 0) {
@@ -352,18 +342,17 @@ class MotionModel final : public ModelOf<Numbers> {
                         change -= lost;
                         slips += kSlip * std::abs(lost) * metre[w] * metre[w];
                     }
-                    if (robot.deadband > 0) change *= let_through(wheel, i, robot.deadband);
+                    if (robot.deadband > 0)
+                        change *= let_through(path.paced(w), pieces[w], robot.deadband, before, now);
                 }
                 driven[w] += change * metre[w];
                 const double play = robot.backlash / 2 * metre[w] / turn;
                 geared[w] = std::clamp(geared[w], driven[w] - play, driven[w] + play);
                 moved[w] = geared[w] - last_geared[w];
                 last_geared[w] = geared[w];
-                if (span > 0 && wheel.first_jump[i] != wheel.last_jump[i])
+                if (span > 0)
                     moved[w] -=
-                        slipped(std::span(path.wheel[w].jumps)
-                                    .subspan(wheel.first_jump[i], wheel.last_jump[i] - wheel.first_jump[i]),
-                                metre[w], values.friction, 2 * play, before, now);
+                        slipped(path.wheel[w].jumps, metre[w], values.friction, 2 * play, before, now);
                 moved[w] *= 1 - robot.load_creep * path.load[i] - robot.slope_creep * path.incline[i];
             }
             double way = (moved[0] + moved[1]) / 2;
@@ -376,12 +365,10 @@ class MotionModel final : public ModelOf<Numbers> {
             const double lever = 2 * std::sin(turned / 2);
             if (std::abs(turned) > 1e-6) way *= lever / turned;
             double aside = 0.0;
-            if (robot.drift_x != 0.0 || robot.drift_y != 0.0) {
-                if (moves) {
-                    const double c = std::cos(path.middle[i]), s = std::sin(path.middle[i]);
-                    way += (robot.drift_x * c + robot.drift_y * s) * span;
-                    aside += (-robot.drift_x * s + robot.drift_y * c) * span;
-                }
+            if (moves && (robot.drift_x != 0.0 || robot.drift_y != 0.0)) {
+                const double c = std::cos(path.middle[i]), s = std::sin(path.middle[i]);
+                way += (robot.drift_x * c + robot.drift_y * s) * span;
+                aside += (-robot.drift_x * s + robot.drift_y * c) * span;
             }
             way -= lever * values.marker_y;
             aside += lever * values.marker_x;
@@ -395,11 +382,10 @@ class MotionModel final : public ModelOf<Numbers> {
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (robot.axle_length * robot.axle_length);
             }
-            if (values.push.rate > 0 && motors.settled[i] != 0) {
-                for (std::size_t o = 0; o < 3; ++o) {
-                    out[o].lapse[first + i] = std::min(values.push.rate * span, 0.5);
-                    out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;
-                }
+            const bool pushed = values.push.rate > 0 && settled(path, before, span);
+            for (std::size_t o = 0; pushed && o < 3; ++o) {
+                out[o].lapse[first + i] = std::min(values.push.rate * span, 0.5);
+                out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;
             }
             if (drop > 0)
                 lapses_of_loss(drop, metre, robot.axle_length, path, i, before, now, first + i, out);
@@ -460,68 +446,51 @@ class MotionModel final : public ModelOf<Numbers> {
         }
     }
 
+    /// What counters would have counted of the commands; where a run has no pose, what they did count.
     void predict_counters(const Numbers& now, Prediction& out) const {
-        const double drop = now.drop;
-        const auto commanded = counts_.get({now.latency, now.late_step}, [&] {
-            return std::array{commanded_steps(0, now), commanded_steps(1, now)};
-        });
         for (std::size_t w = 0; w < 2; ++w) {
             const Observable& o = observables_[3 + w];
             Predicted& p = out[3 + w];
-            p.mean = (*commanded)[w];
+            p.mean = o.y;
             // Whatever else makes a counter jump costs once, and not in all rows after it.
             p.lapse.assign(o.y.size(), kStray);
             p.lapse_scale.assign(o.y.size(), kStraySteps);
             p.lapse_shift.assign(o.y.size(), 0.0);
-            if (drop <= 0) continue;
-            for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {
-                for (std::size_t i = first; i < end; ++i) {
-                    const double before = o.starts[i] != 0 ? o.time[i] : o.time[i - 1];
-                    const Loss loss = lost(path.asked[w].jumps, drop, before, o.time[i]);
-                    if (loss.chance < kStray) continue;
-                    p.lapse[i] = loss.chance;
-                    p.lapse_shift[i] = loss.steps;
-                    p.lapse_scale[i] = kLossDoubt * std::abs(loss.steps);
-                }
-            });
+            auto path = paths_.begin();
+            for (std::size_t first = 0, end = 0; first < o.y.size(); first = end) {
+                while (end < o.y.size() && o.run[end] == o.run[first])
+                    ++end;
+                while (path != paths_.end() && path->run < o.run[first])
+                    ++path;
+                if (path != paths_.end() && path->run == o.run[first])
+                    predict_counter(now, path->asked[w], o, first, end, p);
+            }
         }
     }
 
-    /// What a counter would have counted of the commands; where a run has no pose, what it did count.
-    std::vector<double> commanded_steps(std::size_t wheel, const Numbers& now) const {
-        const Observable& o = observables_[3 + wheel];
-        std::vector<double> counts = o.y;
-        for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {
-            const double start = CurveReader(path.asked[wheel]).at(o.time[first]), origin = o.y[first];
-            CurveReader reader(path.asked[wheel]);
-            double count = 0.0;  // behind what was asked for by the part of a step that is not counted yet
-            for (std::size_t i = first; i < end; ++i) {
-                const double asked = reader.at(o.time[i] - now.latency) - start;
-                count = std::clamp(count, asked - now.late_step, asked + now.late_step);
-                counts[i] = origin + count;
-            }
-        });
-        return counts;
-    }
-
-    /// `look(path, first row, row after the last)` for each run of a counter that has a pose.
-    template <class Look>
-    void for_each_path(const Observable& o, Look look) const {
-        auto path = paths_.begin();
-        for (std::size_t first = 0, end = 0; first < o.y.size(); first = end) {
-            while (end < o.y.size() && o.run[end] == o.run[first])
-                ++end;
-            while (path != paths_.end() && path->run < o.run[first])
-                ++path;
-            if (path != paths_.end() && path->run == o.run[first]) look(*path, first, end);
+    /// In the rows [first, end) of a run.
+    static void predict_counter(const Numbers& now, const WheelCurve& commanded, const Observable& o,
+                                std::size_t first, std::size_t end, Predicted& p) {
+        const double start = CurveReader(commanded).at(o.time[first]);
+        CurveReader reader(commanded);
+        double count = 0.0;  // behind what was asked for by the part of a step that is not counted yet
+        for (std::size_t i = first; i < end; ++i) {
+            const double asked = reader.at(o.time[i] - now.latency) - start;
+            count = std::clamp(count, asked - now.late_step, asked + now.late_step);
+            p.mean[i] = o.y[first] + count;
+            if (now.drop <= 0) continue;
+            const double before = i == first ? o.time[i] : o.time[i - 1];
+            const Loss loss = lost(commanded.jumps, now.drop, before, o.time[i]);
+            if (loss.chance < kStray) continue;
+            p.lapse[i] = loss.chance;
+            p.lapse_shift[i] = loss.steps;
+            p.lapse_scale[i] = kLossDoubt * std::abs(loss.steps);
         }
     }
 
     MotionView view_;
     std::vector<Path> paths_;
-    std::vector<double> along_;                              // way along the tracker's heading, a row each
-    KeyedCache<std::vector<Driven>> driven_;                 // by lateness
-    KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency and late step
+    std::vector<double> along_;  // way along the tracker's heading, a row each
     bool counted_ = false;
     bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -17,18 +18,7 @@ constexpr double kLeastChance = 1e-6;  // of losing a command again and again
 constexpr double kLeastTurn = 1e-9;    // rad: what rounding of numbers makes
 constexpr double kLeastDensity = 1e-300;
 
-void add_paces(const WheelCurve& curve, CurveReader& reader, double from, double to,
-               std::vector<Pace>& paces) {
-    auto knot = std::ranges::upper_bound(curve.time, from);
-    double at = reader.at(from);
-    while (from < to) {
-        const double end = knot == curve.time.end() ? to : std::min(*knot++, to);
-        const double there = reader.at(end), steps = std::abs(there - at);
-        if (end > from) paces.push_back({steps, steps / (end - from)});
-        at = there;
-        from = end;
-    }
-}
+}  // namespace
 
 bool settled(const Path& path, double before, double span) {
     return std::ranges::all_of(path.wheel, [&](const WheelCurve& wheel) {
@@ -37,72 +27,38 @@ bool settled(const Path& path, double before, double span) {
     });
 }
 
-Driven::Wheel driven_wheel(const WheelCurve& done, const WheelCurve& asked, const std::vector<double>& time,
-                           double late) {
-    Driven::Wheel wheel;
-    CurveReader reader(done), pacer(asked), pieces(asked);
-    const auto jump_from = [&](double t) {
-        return static_cast<std::uint32_t>(std::ranges::lower_bound(done.jumps, t, {}, &SpeedJump::time) -
-                                          done.jumps.begin());
-    };
-    double last = 0.0, last_asked = 0.0;
-    for (std::size_t i = 0; i < time.size(); ++i) {
-        const double now = time[i] - late, before = i == 0 ? now : time[i - 1] - late;
-        const double steps = reader.at(now), commanded = &asked == &done ? steps : pacer.at(now);
-        wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
-        wheel.asked.push_back(i == 0 ? 0.0 : std::abs(commanded - last_asked));
-        last = steps;
-        last_asked = commanded;
-        wheel.first_jump.push_back(jump_from(before - kLongestSlip));
-        wheel.last_jump.push_back(jump_from(now));
-        if (i > 0) add_paces(asked, pieces, before, now, wheel.paces);
-        wheel.last_pace.push_back(static_cast<std::uint32_t>(wheel.paces.size()));
-    }
-    return wheel;
-}
-
-}  // namespace
-
-Driven driven_by(const Path& path, double late) {
-    Driven driven;
-    for (std::size_t w = 0; w < 2; ++w)
-        driven.wheel[w] = driven_wheel(path.wheel[w], pace_of(path, w), path.time, late);
-    for (std::size_t i = 0; i < path.time.size(); ++i) {
-        const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-        driven.settled.push_back(settled(path, before, now - before) ? 1 : 0);
-    }
-    return driven;
-}
-
-const WheelCurve& pace_of(const Path& path, std::size_t wheel) {
-    return path.asked[wheel].empty() ? path.wheel[wheel] : path.asked[wheel];
-}
-
-double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband) {
-    double all = 0.0, moved = 0.0;
-    for (std::uint32_t k = row == 0 ? 0 : wheel.last_pace[row - 1]; k < wheel.last_pace[row]; ++k) {
-        const Pace& pace = wheel.paces[k];
-        all += pace.steps;
-        moved += pace.steps / (1 + std::exp(-(pace.speed - deadband) / (kEdge * deadband)));
+double let_through(const WheelCurve& asked, CurveReader& pacer, double deadband, double from, double to) {
+    auto knot = std::ranges::upper_bound(asked.time, from);
+    double all = 0.0, moved = 0.0, at = pacer.at(from);
+    while (from < to) {  // in pieces of one speed
+        const double end = knot == asked.time.end() ? to : std::min(*knot++, to);
+        const double there = pacer.at(end), steps = std::abs(there - at), speed = steps / (end - from);
+        if (end > from) {
+            all += steps;
+            moved += steps / (1 + std::exp(-(speed - deadband) / (kEdge * deadband)));
+        }
+        at = there;
+        from = end;
     }
     return all > 0 ? moved / all : 0.0;
 }
 
-double slipped(std::span<const SpeedJump> jumps, double metre, double inverse_mu, double play, double from,
+double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse_mu, double play, double from,
                double to) {
     double sum = 0.0;
-    for (const SpeedJump& jump : jumps) {
-        const double speed = std::abs(jump.change) * metre;
+    auto jump = std::ranges::lower_bound(jumps, from - kLongestSlip, {}, &SpeedJump::time);
+    for (; jump != jumps.end() && jump->time < to; ++jump) {
+        const double speed = std::abs(jump->change) * metre;
         const double lasts = speed * inverse_mu / kGravity;
         const auto done = [&](double t) {
-            const double share = std::clamp((t - jump.time) / std::max(lasts, 1e-6), 0.0, 1.0);
+            const double share = std::clamp((t - jump->time) / std::max(lasts, 1e-6), 0.0, 1.0);
             return 1 - (1 - share) * (1 - share);
         };
         double way = speed * lasts / 2;
-        if (play > 0 && jump.before * (jump.before + jump.change) < 0)
-            way -= std::min(play, std::abs(jump.before * (jump.before + jump.change)) * metre * metre *
+        if (play > 0 && jump->before * (jump->before + jump->change) < 0)
+            way -= std::min(play, std::abs(jump->before * (jump->before + jump->change)) * metre * metre *
                                       inverse_mu / kGravity);
-        sum += std::copysign(way, jump.change) * (done(to) - done(from));
+        sum += std::copysign(way, jump->change) * (done(to) - done(from));
     }
     return sum;
 }
@@ -148,14 +104,11 @@ void heading_errors(std::span<const double> above, std::span<const double> time,
 
 void kept_headings(std::span<const double> above, const Turned& turned, std::vector<double>& kept) {
     kept.assign(above.size(), 1.0);
-    thread_local std::vector<double> sizes;
-    sizes.clear();
+    std::vector<double> sizes;
     for (std::size_t i = 1; i < above.size(); ++i)
         sizes.push_back(std::abs(above[i] - above[i - 1]));
     if (sizes.empty()) return;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::ranges::nth_element(sizes, middle);
-    const double sd = std::max(stats::kMadToSigma * *middle, kLeastTurn);
+    const double sd = std::max(stats::kMadToSigma * stats::upper_median(std::move(sizes)), kLeastTurn);
     for (std::size_t i = 1; i < above.size(); ++i) {
         // A walk of q a row under noise of r is best followed by what fades by sqrt(q / r) a row, where that
         // is little (the steady Kalman gain); a step has twice the noise of a heading.

@@ -15,39 +15,22 @@ struct Path {
     std::uint32_t run = 0;
     WheelCurve wheel[2], asked[2];
     std::vector<double> time, middle, load, incline;  ///< of the rows used
+
+    /// Where the speed of a wheel is read: the command, where there is one; a counter's speeds are rounded.
+    const WheelCurve& paced(std::size_t w) const { return asked[w].empty() ? wheel[w] : asked[w]; }
 };
 
-/// Steps commanded at one speed, without sign: a row has several such pieces where the command changes in it.
-struct Pace {
-    double steps, speed;
-};
+/// Has neither wheel changed its speed in a row of `span` s after `before` or in the row before it? What
+/// happens after a change cannot be parted from what the change itself does, and is not taken for a push.
+bool settled(const Path& path, double before, double span);
 
-/// What a path's motors did in each of its rows, for one lateness of the tracker.
-struct Driven {
-    struct Wheel {
-        std::vector<double> steps, asked;                  ///< steps made; steps commanded, without sign
-        std::vector<std::uint32_t> first_jump, last_jump;  ///< changes of speed that may still cost way
-        std::vector<Pace> paces;                           ///< what was commanded, in pieces of one speed
-        std::vector<std::uint32_t> last_pace;              ///< end of each row's pieces
-    };
-    Wheel wheel[2];
-    /// Has neither wheel changed its speed in the row or in the one before? What happens after a change
-    /// cannot be parted from what the change itself does, and is not taken for a push.
-    std::vector<char> settled;
-};
-
-/// `late`: s by which the tracker's poses are late.
-Driven driven_by(const Path& path, double late);
-
-/// Where the speed of a wheel is read: the command, where there is one; a counter's speeds are rounded.
-const WheelCurve& pace_of(const Path& path, std::size_t wheel);
-
-/// Share of a row's steps that a dead band (steps/s) lets through.
-double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband);
+/// Share of the steps commanded between two times (s) that a dead band (steps/s) lets through; `pacer` reads
+/// `asked`.
+double let_through(const WheelCurve& asked, CurveReader& pacer, double deadband, double from, double to);
 
 /// Metres that changes of speed cost between two times (s): wheels follow no faster than mu g. On reversal
 /// the wheel rolls on while its gear crosses the play (metres), and slides less. `metre`: of a step.
-double slipped(std::span<const SpeedJump> jumps, double metre, double inverse_mu, double play, double from,
+double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse_mu, double play, double from,
                double to);
 
 /// A lost command leaves the wheel at its old speed until the host says the same again, in the next row: how

@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 
 namespace puckloop::gap {
@@ -42,18 +43,17 @@ class ProximityModel final : public ModelOf<Numbers> {
   public:
     explicit ProximityModel(const Experiment& experiment) {
         const Rows rows(experiment, "sensor", {"distance_m", "reading"});
-        std::vector<std::uint32_t> used;
-        observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
-        std::vector<double> sensor, object, battery, order;
+        std::vector<double> sensor, object;
         // clang-format off
-        rows.take(used, {{distance_, "distance_m"}, {angle_, "angle_rad"}, {reflectivity_, "reflectivity", 1},
-                         {ambient_, "ambient"}, {pair_, "pair_reading"}, {neighbour_, "neighbour_reading"},
-                         {motor_, "motor_speed"}, {velocity_, "velocity"}, {time_, "t_s"},
-                         {others_, "neighbours", experiment.has("neighbours") ? 0.0 : 1.0},
-                         {battery, "battery_v", NAN}, {order, "order", NAN}, {sensor, "sensor"}, {object, "object", 1}});
+        observables_.push_back(rows.observable("reading", NoiseKind::Carry,
+            {{distance_, "distance_m"}, {angle_, "angle_rad"}, {reflectivity_, "reflectivity", 1},
+             {ambient_, "ambient"}, {pair_, "pair_reading"}, {neighbour_, "neighbour_reading"},
+             {motor_, "motor_speed"}, {velocity_, "velocity"}, {time_, "t_s"},
+             {others_, "neighbours", experiment.has("neighbours") ? 0.0 : 1.0},
+             {battery_, "battery_v", NAN}, {order_, "order", NAN}, {sensor, "sensor"}, {object, "object", 1}}));
         // clang-format on
-        center(std::move(battery), battery_);
-        center(std::move(order), order_);
+        center(battery_);
+        center(order_);
         if (!order_.empty()) {
             const auto [first, last] = std::ranges::minmax_element(order_);
             half_order_ = (*last - *first) / 2;
@@ -77,10 +77,8 @@ class ProximityModel final : public ModelOf<Numbers> {
                 ray_sine_.push_back(std::sin(angle + aside));
             }
         }
-        for (auto& speed : motor_) {
-            stepping_.push_back(speed != 0.0 ? 1.0 : 0.0);
+        for (auto& speed : motor_)
             speed = std::abs(speed) / physics::kSpeedUnit;
-        }
         pulses_ = foreign_pulses(observables_[0], sensor_, distance_, angle_);
         for (std::size_t i = 0; i < others_.size(); ++i)
             if (pulses_.sheltered[static_cast<std::size_t>(sensor_[i])]) others_[i] = 0.0;
@@ -128,11 +126,11 @@ class ProximityModel final : public ModelOf<Numbers> {
                 seen += beside * (neighbour_[i] - idle(s + 1) - idle(s + physics::kProximitySensors - 1) -
                                   2 * beside * own);
             double gain = now.scale * now.gain[s] * (1 - now.ambient_gain * ambient_[i]);
-            if (now.warmup_gain != 0.0) gain *= 1 + now.warmup_gain * warmed(time_[i], now.warmup_time);
+            gain *= 1 + warmed(now.warmup_gain, time_[i], now.warmup_time);
             if (!battery_.empty()) gain *= 1 + now.battery_gain * battery_[i];
             if (!order_.empty()) gain *= 1 + all.order_drift * (order_[i] - all.order_zero * half_order_);
             p.mean[i] = (gain * seen + now.offset[s] + now.ambient_offset * ambient_[i]) *
-                        (1 - now.motor_sag * stepping_[i]);
+                        (1 - now.motor_sag * (motor_[i] > 0 ? 1.0 : 0.0));
         }
         p.floor = now.threshold;
         noise(now, p);
@@ -247,14 +245,12 @@ class ProximityModel final : public ModelOf<Numbers> {
         return all;
     }
 
-    static void center(std::vector<double> values, std::vector<double>& out) {
-        double sum = 0.0;
-        for (const double value : values)
-            sum += value;
-        if (values.empty() || std::isnan(sum)) return;
+    /// About their mean; none where one is missing or all are alike.
+    static void center(std::vector<double>& values) {
+        const double sum = std::accumulate(values.begin(), values.end(), 0.0);
         for (double& value : values)
             value -= sum / static_cast<double>(values.size());
-        if (*std::ranges::max_element(values) > 0) out = std::move(values);
+        if (std::ranges::none_of(values, [](double value) { return value > 0; })) values.clear();
     }
 
     /// Which object a row is about: as stated, else by the surface's name or its reflectivity.
@@ -350,8 +346,8 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::array<KeyedCache<std::vector<double>>, physics::kProximitySensors> seen_;  // of a sensor's rows
     std::array<std::vector<std::size_t>, physics::kProximitySensors> rows_of_;
     std::vector<double> spread_, cosine_, ray_cosine_, ray_sine_;
-    std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, stepping_,
-        velocity_, time_, others_, battery_, order_;
+    std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, velocity_,
+        time_, others_, battery_, order_;
     std::vector<int> sensor_;
     std::vector<std::size_t> object_;  // the parameter of each row's object
     ForeignPulses pulses_;

@@ -13,11 +13,10 @@
 #include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -36,14 +35,12 @@ constexpr double kTurned = 0.66, kWholeTurn = 0.76;  // share beyond half a rece
 constexpr std::size_t kLeastPiled = 5;               // equal highest strengths that look like a rail
 
 double between(double RabMeasured::*what, double distance) {
-    if (distance <= kRabTable[0].distance) return kRabTable[0].*what;
-    for (std::size_t i = 1; i < std::size(kRabTable); ++i)
-        if (distance <= kRabTable[i].distance) {
-            const double share =
-                (distance - kRabTable[i - 1].distance) / (kRabTable[i].distance - kRabTable[i - 1].distance);
-            return kRabTable[i - 1].*what + share * (kRabTable[i].*what - kRabTable[i - 1].*what);
-        }
-    return kRabTable.back().*what;
+    const auto to = std::ranges::lower_bound(kRabTable, distance, {}, &RabMeasured::distance);
+    if (to == kRabTable.begin()) return to->*what;
+    if (to == kRabTable.end()) return kRabTable.back().*what;
+    const auto from = to - 1;
+    const double share = (distance - from->distance) / (to->distance - from->distance);
+    return from->*what + share * (to->*what - from->*what);
 }
 
 constexpr std::array<double, kReceivers + 1> all_one() {
@@ -128,46 +125,47 @@ class RabModel final : public ModelOf<Numbers> {
     }
 
     void gather_strength(const Rows& rows, const Experiment& experiment) {
-        std::vector<std::uint32_t> used;
-        Observable one = rows.observable("strength", NoiseKind::Carry, used);
-        strength_row_ = used;
+        std::vector<double> distances, receiver, emitter;
+        Observable one = rows.observable("strength", NoiseKind::Carry,
+                                         {{distances, "distance_m"},
+                                          {receiver, "receiver"},
+                                          {emitter, "emitter"},
+                                          {occluded_, "occluded"}},
+                                         {}, &strength_row_);
         for (double& y : one.y)
             y = std::log(std::max(y, 1.0));
         one.unit = "ln counts";
         one.instrument = {one.instrument.floor > 0 ? std::log(one.instrument.floor) : NAN,
                           one.instrument.ceiling > 0 ? std::log(one.instrument.ceiling) : NAN, 0.0};
         one.known_sd = 1.0;
-        for (const double distance : taken(rows.column("distance_m", 0), used)) {
+        for (const double distance : distances) {
             log_median_.push_back(between(&RabMeasured::log_median, distance));
             spread_.push_back(between(&RabMeasured::spread, distance));
         }
         if (ring_) {
-            spread_ = taken(ring_->strength_sd(), used);
-            one.run_draws = of_boards(&RabReading::log_strength, used);
+            spread_ = taken(ring_->strength_sd(), strength_row_);
+            one.run_draws = of_boards(&RabReading::log_strength, strength_row_);
         }
         // What is not stated cannot differ: one common gain would be the strength's scale by another name.
-        if (experiment.has("receiver")) receiver_ = whole(taken(rows.column("receiver", 0), used));
-        if (experiment.has("emitter")) emitter_ = whole(taken(rows.column("emitter", 0), used));
-        occluded_ = taken(rows.column("occluded", 0), used);
+        if (experiment.has("receiver")) receiver_ = whole(receiver);
+        if (experiment.has("emitter")) emitter_ = whole(emitter);
         strength_ = observables_.size();
         observables_.push_back(std::move(one));
     }
 
     void gather_bearing(const Rows& rows, const Experiment& experiment) {
-        std::vector<std::uint32_t> used;
-        Observable one = rows.observable("bearing_rad", NoiseKind::Carry, used);
+        Observable one = rows.observable("bearing_rad", NoiseKind::Carry, {{truth_, "true_bearing_rad"}}, {},
+                                         &bearing_row_);
         one.name = "bearing";
         one.unit = "rad";
-        bearing_row_ = used;
-        truth_ = taken(rows.column("true_bearing_rad", 0), used);
         for (std::size_t i = 0; i < one.y.size(); ++i)
             one.y[i] = std::remainder(one.y[i] - truth_[i], 2 * std::numbers::pi);
         if (ring_) {
-            bearing_factor_ = taken(ring_->bearing_sd(), used);
+            bearing_factor_ = taken(ring_->bearing_sd(), bearing_row_);
             const double usual = *std::ranges::min_element(bearing_factor_);
             for (double& factor : bearing_factor_)
                 factor /= usual;
-            one.run_draws = of_boards(&RabReading::bearing, used);
+            one.run_draws = of_boards(&RabReading::bearing, bearing_row_);
         }
         const physics::Parameters defaults;
         for (const double bearing : truth_)
@@ -175,19 +173,18 @@ class RabModel final : public ModelOf<Numbers> {
                 const double way = defaults.ir.receiver_angle[r];
                 const double facing = std::cos(bearing - way);
                 const double strength = facing > 0 ? std::pow(facing, defaults.ir.receiver_exponent) : 0.0;
-                lobe_.push_back({strength * std::cos(way), strength * std::sin(way)});
+                lobe_.emplace_back(strength * std::cos(way), strength * std::sin(way));
             }
         bearing_ = observables_.size();
         observables_.push_back(std::move(one));
     }
 
     void gather_reception(const Rows& rows) {
-        std::vector<std::uint32_t> used;
-        Observable one = rows.observable("received", NoiseKind::Event, used);
-        rows.take(used, {{senders_, "senders", 1},
-                         {frame_, "frame_time", 0.0092},
-                         {period_, "send_period", 0.02},
-                         {rate_, "arrival_rate"}});
+        Observable one = rows.observable("received", NoiseKind::Event,
+                                         {{senders_, "senders", 1},
+                                          {frame_, "frame_time", 0.0092},
+                                          {period_, "send_period", 0.02},
+                                          {rate_, "arrival_rate"}});
         if (std::ranges::all_of(rate_, [](double rate) { return rate == 0; }))
             for (std::size_t i = 0; i < rate_.size(); ++i)
                 rate_[i] = senders_[i] / std::max(period_[i], 1e-3);
@@ -255,13 +252,11 @@ class RabModel final : public ModelOf<Numbers> {
         const std::size_t n = log_median_.size();
         p.mean.resize(n);
         p.factor = spread_;
-        const double more = 1 + now.strength_spread, gain = now.strength_gain, low = now.far_floor,
-                     rail = now.saturation;
         const double other = now.multipath;
         const auto of_ring = ring_ ? ring_readings(now) : nullptr;
         const auto receivers = logs_of(now.receiver), emitters = logs_of(now.emitter);
         for (std::size_t i = 0; i < n; ++i) {
-            double level = gain;
+            double level = now.strength_gain;
             if (ring_) {
                 level += (*of_ring)[strength_row_[i]].log_strength;
             } else {
@@ -269,13 +264,13 @@ class RabModel final : public ModelOf<Numbers> {
                 if (!receiver_.empty()) level += receivers[static_cast<std::size_t>(receiver_[i])];
                 if (!emitter_.empty()) level += emitters[static_cast<std::size_t>(emitter_[i])];
             }
-            if (low > 0) level = std::max(level, std::log(low));
+            if (now.far_floor > 0) level = std::max(level, std::log(now.far_floor));
             p.mean[i] = level;
-            p.factor[i] *= more;
+            p.factor[i] *= 1 + now.strength_spread;
         }
         // The detector's rail cuts each message's strength, with what chance added to it.
-        p.ceiling = rail < kFullScale - 1 ? std::log(rail) : 0.0;
-        p.pile = 1 / rail;
+        p.ceiling = now.saturation < kFullScale - 1 ? std::log(now.saturation) : 0.0;
+        p.pile = 1 / now.saturation;
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.3);
         p.lapse_shift.assign(p.lapse.size(), -now.multipath_loss);
@@ -310,15 +305,12 @@ class RabModel final : public ModelOf<Numbers> {
     std::vector<double> pull_of(const std::vector<double>& gain, std::size_t n) const {
         std::vector<double> pull(n);
         for (std::size_t i = 0; i < n; ++i) {
-            double x = 0, y = 0, equal_x = 0, equal_y = 0;
+            std::complex<double> sum, equal;
             for (std::size_t r = 0; r < kReceivers; ++r) {
-                const Lobe& lobe = lobe_[i * kReceivers + r];
-                equal_x += lobe.x;
-                equal_y += lobe.y;
-                x += gain[r] * lobe.x;
-                y += gain[r] * lobe.y;
+                equal += lobe_[i * kReceivers + r];
+                sum += gain[r] * lobe_[i * kReceivers + r];
             }
-            pull[i] = std::atan2(y * equal_x - x * equal_y, x * equal_x + y * equal_y);
+            pull[i] = std::arg(sum * std::conj(equal));
         }
         return pull;
     }
@@ -327,17 +319,16 @@ class RabModel final : public ModelOf<Numbers> {
         const Observable& o = observables_[*reception_];
         const std::size_t n = o.y.size();
         p.mean.resize(n);
-        const double collisions = now.collisions, kept = 1 - now.random_loss, fetch = now.fetch_time,
-                     beat = now.beat, burst = now.beat_burst;
+        const double fetch = now.fetch_time, beat = now.beat;
         for (std::size_t i = 0; i < n; ++i) {
-            double arrives = kReception * kept *
-                             std::exp(-2 * collisions * std::max(senders_[i] - 1, 0.0) * frame_[i] /
+            double arrives = kReception * (1 - now.random_loss) *
+                             std::exp(-2 * now.collisions * std::max(senders_[i] - 1, 0.0) * frame_[i] /
                                       std::max(period_[i], 1e-4));
             if (fetch > 0) arrives *= std::min(1.0, 1 / std::max(rate_[i] * fetch, 1e-6));
             if (beat > 0) {  // losses in bursts: what happened before bears on now
                 double lost = beat;
                 if (o.starts[i] == 0 && !o.time.empty()) {
-                    const double forget = std::exp(-(o.time[i] - o.time[i - 1]) / burst);
+                    const double forget = std::exp(-(o.time[i] - o.time[i - 1]) / now.beat_burst);
                     lost = o.y[i - 1] < 0.5 ? beat + (1 - beat) * forget : beat * (1 - forget);
                 }
                 arrives *= 1 - lost;
@@ -346,17 +337,13 @@ class RabModel final : public ModelOf<Numbers> {
         }
     }
 
-    struct Lobe {
-        double x, y;
-    };
-
     std::optional<RabRing> ring_;  // of all rows
     bool one_unit_ = false;        // the same pair of boards in all runs
     std::vector<std::uint32_t> strength_row_, bearing_row_;
     std::vector<double> truth_, bearing_factor_;
-    double rail_ = 0.0;                     // counts
-    std::vector<Lobe> lobe_;                // of the receivers in turn, for each bearing
-    KeyedCache<std::vector<double>> pull_;  // of each bearing, by the receivers' gains
+    double rail_ = 0.0;                       // counts
+    std::vector<std::complex<double>> lobe_;  // of the receivers in turn, for each bearing
+    KeyedCache<std::vector<double>> pull_;    // of each bearing, by the receivers' gains
     std::vector<double> log_median_, spread_, occluded_, senders_, frame_, period_, rate_;
     std::vector<int> receiver_, emitter_;
     std::size_t receivers_ = 0;                                  // that messages state

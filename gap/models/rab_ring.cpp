@@ -48,6 +48,17 @@ double log_ahead(double bearing, std::size_t sensor) {
     return -0.5 * std::log(std::max(std::abs(std::cos(bearing - table()[sensor].angle)), kLeastCosine));
 }
 
+/// Level and carrier at a receiver, emitters of these gains.
+std::pair<double, double> light_at(const physics::IrCoupling& light, std::size_t receiver,
+                                   const std::array<double, kRabParts>& gain) {
+    double level = 0, carrier = 0;
+    for (std::size_t e = 0; e < kRabParts; ++e) {
+        level += gain[e] * static_cast<double>(light.level[e][receiver]);
+        carrier += gain[e] * static_cast<double>(light.carrier[e][receiver]);
+    }
+    return {level, carrier};
+}
+
 /// The mean of the reading when each receiver's ln strength scatters by `spread`: which receiver is the
 /// second best is chance then, and the better of two scattered ones is better than their means.
 double mean_log_strength(const std::array<double, kRabParts>& peaks, double bearing, double spread) {
@@ -117,28 +128,6 @@ double RabRing::full_scale(std::size_t receiver) const {
     return std::max(parameters_.rail - parameters_.baseline[receiver], 1.0);
 }
 
-std::pair<double, double> RabRing::Light::at(std::size_t receiver,
-                                             const std::array<double, kRabParts>& gain) const {
-    double sum = 0, modulated = 0;
-    for (std::size_t e = 0; e < kRabParts; ++e) {
-        sum += gain[e] * static_cast<double>(level[e][receiver]);
-        modulated += gain[e] * static_cast<double>(carrier[e][receiver]);
-    }
-    return {sum, modulated};
-}
-
-RabRing::Light RabRing::light_of(const RabLook& look, const physics::IrBoard& sender,
-                                 const physics::IrBoard& receiver) const {
-    Light light;
-    const auto coupling = physics::couple(sender, receiver, {1.0, carrier_}, {}, {});
-    for (std::size_t e = 0; e < kRabParts; ++e) {
-        if (look.emitter != 0 && static_cast<std::size_t>(look.emitter) != e + 1) continue;
-        light.level[e] = coupling.level[e];
-        light.carrier[e] = coupling.carrier[e];
-    }
-    return light;
-}
-
 /// Light of every look with lobes of these exponents, gains of all parts 1.
 std::vector<RabRing::Light> RabRing::shine(double emitter_lobe, double receiver_lobe) const {
     auto p = parameters_;
@@ -151,21 +140,22 @@ std::vector<RabRing::Light> RabRing::shine(double emitter_lobe, double receiver_
     for (std::size_t i = 0; i < looks_.size(); ++i) {
         const RabLook& look = looks_[i];
         const double apart = bodies + look.distance;
-        const auto stand = [&](double facing) {
+        const auto light_of = [&](double facing) {
             sender.place(apart * std::cos(look.bearing), apart * std::sin(look.bearing),
                          look.bearing + kHalfTurn - facing);
+            Light light = physics::couple(sender, receiver, {1.0, carrier_}, {}, {});
+            for (std::size_t e = 0; look.emitter != 0 && e < kRabParts; ++e)
+                if (e + 1 != static_cast<std::size_t>(look.emitter)) light.level[e] = light.carrier[e] = {};
+            return light;
         };
-        const bool one = look.emitter != 0;
-        if (!std::isnan(look.facing) || one) {
+        if (!std::isnan(look.facing) || look.emitter != 0) {
             // Of a single emitter and an unknown heading: that it looked at the receiver.
             const auto number = static_cast<std::size_t>(std::max(look.emitter, 1)) - 1;
-            stand(std::isnan(look.facing) ? p.emitter_angle[number] : look.facing);
-            all[i] = light_of(look, sender, receiver);
+            all[i] = light_of(std::isnan(look.facing) ? p.emitter_angle[number] : look.facing);
             continue;
         }
         for (std::size_t h = 0; h < kHeadings; ++h) {
-            stand(2 * kHalfTurn * static_cast<double>(h) / kHeadings);
-            const Light light = light_of(look, sender, receiver);
+            const Light light = light_of(2 * kHalfTurn * static_cast<double>(h) / kHeadings);
             for (std::size_t e = 0; e < kRabParts; ++e)
                 for (std::size_t k = 0; k < kRabParts; ++k) {
                     all[i].level[e][k] += light.level[e][k] / static_cast<float>(kHeadings);
@@ -187,7 +177,7 @@ std::shared_ptr<const std::vector<RabRing::Seen>> RabRing::gather(const RabParts
         std::vector<Seen> all(looks_.size());
         for (std::size_t i = 0; i < looks_.size(); ++i)
             for (std::size_t k = 0; k < kRabParts; ++k) {
-                const auto [level, carrier] = (*light)[i].at(k, parts.emitter);
+                const auto [level, carrier] = light_at((*light)[i], k, parts.emitter);
                 all[i].level[k] = level;
                 if (level <= 0 || carrier <= 0) continue;
                 if (soft > 0)
@@ -285,7 +275,7 @@ void RabRing::draw_chance() {
                 for (std::size_t e = 0; e < kRabParts; ++e)
                     gain[e] = std::exp(sign * emitter[e]);
                 for (std::size_t k = 0; k < kRabParts; ++k) {
-                    const auto [level, carrier] = all_light[i].at(k, gain);
+                    const auto [level, carrier] = light_at(all_light[i], k, gain);
                     if (carrier * std::exp(sign * demodulator[k]) < p.threshold) continue;
                     peaks[k] =
                         std::min(std::max(level, kFaintest) * std::exp(sign * receiver[k]), full_scale(k));

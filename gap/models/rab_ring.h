@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace puckloop::gap {
@@ -56,18 +55,12 @@ class RabRing {
     std::vector<std::vector<RabReading>> drawn_boards() const;
 
   private:
-    struct Light {
-        std::array<std::array<float, kRabParts>, kRabParts> level{}, carrier{};  // [emitter][receiver]
-        /// Level and carrier at a receiver, emitters of these gains.
-        std::pair<double, double> at(std::size_t receiver, const std::array<double, kRabParts>& gain) const;
-    };
+    using Light = physics::IrCoupling;
     struct Seen {
         std::array<double, kRabParts> level{}, heard{};  // heard: probability that it counts
     };
     std::vector<Light> shine(double emitter_lobe, double receiver_lobe) const;
     std::shared_ptr<const std::vector<Seen>> gather(const RabParts& parts) const;
-    Light light_of(const RabLook& look, const physics::IrBoard& sender,
-                   const physics::IrBoard& receiver) const;
     RabReading reading_of(const Seen& seen, const RabParts& parts) const;
     double full_scale(std::size_t receiver) const;
     void draw_chance();

@@ -1,6 +1,7 @@
 #include "gap/models/rows.h"
 
 #include "gap/clean/quantum.h"
+#include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/stats/series.h"
 
@@ -73,8 +74,8 @@ std::vector<Rows::Beat> Rows::beats(const std::vector<double>& time) const {
     return beats;
 }
 
-Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
-                            const std::vector<double>& skipped) const {
+Observable Rows::observable(std::string_view name, NoiseKind noise, std::initializer_list<Wanted> beside,
+                            const std::vector<double>& skipped, std::vector<std::uint32_t>* places) const {
     Observable out;
     out.name = name;
     const ColumnInfo* info = find_column(experiment_.kind, name);
@@ -101,12 +102,13 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
         return static_cast<std::uint32_t>(std::min(steps, kMostSteps));
     };
     bool begins = true, timed = true;
-    used.clear();
+    std::vector<std::uint32_t> used;
     for (std::size_t i = 0; i < size(); ++i) {
         if (starts_[i] != 0) begins = true;
         if (std::isnan(y[i]) || (!skipped.empty() && skipped[i] > 0.5)) continue;
         const double most = kGap * beat[run_[i]].usual;
-        const bool gap = !used.empty() && most > 0 && time[i] - time[used.back()] > most;
+        const bool gap =
+            noise != NoiseKind::Level && !used.empty() && most > 0 && time[i] - time[used.back()] > most;
         out.steps.push_back(begins || used.empty() ? 1 : back(used.back(), i));
         used.push_back(static_cast<std::uint32_t>(i));
         out.y.push_back(y[i]);
@@ -118,12 +120,10 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
         begins = false;
     }
     if (!timed) out.time.clear();
-    return out;
-}
-
-void Rows::take(const std::vector<std::uint32_t>& used, std::initializer_list<Wanted> columns) const {
-    for (const Wanted& one : columns)
+    for (const Wanted& one : beside)
         one.into = taken(column(one.name, one.fallback), used);
+    if (places != nullptr) *places = std::move(used);
+    return out;
 }
 
 std::vector<double> taken(const std::vector<double>& column, const std::vector<std::uint32_t>& used) {
@@ -134,9 +134,7 @@ std::vector<double> taken(const std::vector<double>& column, const std::vector<s
 }
 
 std::vector<double> distinct(const std::vector<double>& column) {
-    std::vector<double> values;
-    for (const double value : column)
-        if (!std::isnan(value)) values.push_back(value);
+    std::vector<double> values = known(column);
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;

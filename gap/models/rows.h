@@ -21,20 +21,20 @@ class Rows {
     std::size_t size() const { return run_.size(); }
     /// The column in these rows; `fallback` where it is missing.
     std::vector<double> column(std::string_view name, double fallback) const;
-    /// An observable of the column, rows without it left out: fills y, run, row, starts, steps, time. Rows
-    /// that are missing are counted by `seq`, else by time where a run keeps to a beat. `used` receives the
-    /// places of its rows in these rows. Its quantum is the instrument's, else what the values keep to. Rows
-    /// where `skipped` is above a half are left out, too.
-    Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
-                          const std::vector<double>& skipped = {}) const;
     /// A column, where it goes to, and what it is where it is missing.
     struct Wanted {
         std::vector<double>& into;
         std::string_view name;
         double fallback = 0.0;
     };
-    /// These columns at the places `used`.
-    void take(const std::vector<std::uint32_t>& used, std::initializer_list<Wanted> columns) const;
+    /// An observable of the column, rows without it left out: fills y, run, row, starts, steps, time, and the
+    /// columns `beside` it. A sum (Level) goes on over gaps. Rows that are missing are counted by `seq`, else
+    /// by time where a run keeps to a beat. Its quantum is the instrument's, else what the values keep to.
+    /// Rows where `skipped` is above a half are left out, too. `places` receives where its rows are in these
+    /// rows.
+    Observable observable(std::string_view name, NoiseKind noise, std::initializer_list<Wanted> beside,
+                          const std::vector<double>& skipped = {},
+                          std::vector<std::uint32_t>* places = nullptr) const;
 
   private:
     /// Time between rows of a run: runs have rates of their own.

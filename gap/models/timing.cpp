@@ -16,6 +16,7 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 namespace puckloop::gap {
 
@@ -26,7 +27,6 @@ constexpr double kTick = 1e-5;   // s, no robot's clock is written finer
 constexpr double kCoarse = 0.2;  // of the usual time between frames: no clock is written coarser
 constexpr double kBaud = 115200;
 constexpr double kBits = 10;              // a byte on the line
-constexpr double kTolerance = 0.02;       // error of the rate that a receiver stands
 constexpr double kLongestBatch = 0.5;     // s, looked for
 constexpr double kEven = 1e-3;            // coherence that even frames lack for their clocks' rounding
 constexpr double kLittle = 0.05;          // of what frames lack of keeping to a batch by themselves
@@ -55,15 +55,13 @@ class TimingModel final : public ModelOf<Numbers> {
     explicit TimingModel(const Experiment& experiment) {
         clocks_ = experiment.has("t_robot_s");
         const Rows rows(experiment, "", {"t_host_s"});
-        std::vector<std::uint32_t> used;
-        const Observable host = rows.observable("t_host_s", NoiseKind::Level, used);
-        gather_counts(experiment, host);
-        std::vector<double> bytes, baud;
-        rows.take(
-            used,
-            {{bytes, "bytes"}, {baud, "baud", kBaud}, {reads_, "i2c_reads"}, {robot_, "t_robot_s", NAN}});
-        for (std::size_t i = 0; i < bytes.size(); ++i)
-            wire_.push_back(bytes[i] * kBits / baud[i]);
+        Line line;
+        const Observable host = rows.observable("t_host_s", NoiseKind::Level,
+                                                {{line.bytes, "bytes"},
+                                                 {line.baud, "baud", kBaud},
+                                                 {line.reads, "i2c_reads"},
+                                                 {robot_, "t_robot_s", NAN}});
+        arrived_ = frames_of(experiment, host, line);
         if (clocks_) {
             observables_.push_back(host);
             Observable& period = observables_.back();
@@ -71,9 +69,9 @@ class TimingModel final : public ModelOf<Numbers> {
             period.y = robot_;
             set_up(period, experiment);
             period.instrument.quantum = std::max(rounding_of(robot_), kTick);
-            if (keeps_to_periods(period)) take_periods(period);
+            take_periods(period);
         } else {
-            robot_ = periods_;
+            std::ranges::transform(arrived_, robot_.begin(), &Frame::due);
         }
         observables_.push_back(host);
         observables_.back().name = "arrival";
@@ -102,8 +100,8 @@ class TimingModel final : public ModelOf<Numbers> {
         std::size_t o = 0;
         if (clocks_) predict_clock(now, out[o++]);
         predict_arrival(now, out[o++]);
-        if (ok_ >= 0) predict_frames(now, out[static_cast<std::size_t>(ok_)]);
-        if (shift_ >= 0) predict_shifts(now, out[static_cast<std::size_t>(shift_)]);
+        if (ok_) predict_frames(now, out[*ok_]);
+        if (shift_) predict_shifts(now, out[*shift_]);
     }
 
     /// The longest batch that intervals between arrivals keep to, and those of frames that are ready do not;
@@ -178,9 +176,7 @@ class TimingModel final : public ModelOf<Numbers> {
   private:
     /// For each start of a batch: so many frames are broken as wait longer.
     std::vector<double> limits() const {
-        const auto& whole = observables_[static_cast<std::size_t>(ok_)].y;
-        const double kept =
-            std::accumulate(whole.begin(), whole.end(), 0.0) / static_cast<double>(whole.size());
+        const double kept = stats::mean(observables_[*ok_].y);
         std::vector<double> all = starts("timing.batch");
         for (double& one : all)
             one *= kept;
@@ -272,77 +268,68 @@ class TimingModel final : public ModelOf<Numbers> {
         one.instrument = {NAN, NAN, one.instrument.quantum};
         for (std::size_t i = 1; i < one.y.size(); ++i) {
             const auto& anew = experiment.runs[one.run[i]].begun_anew;
-            const bool begins = one.run[i] != one.run[i - 1] ||
-                                std::binary_search(anew.begin(), anew.end(), std::size_t{one.row[i]});
-            one.starts[i] = begins ? 1 : 0;
+            if (std::ranges::binary_search(anew, std::size_t{one.row[i]})) one.starts[i] = 1;
         }
     }
 
-    /// A frame by its number, when it was due, what it takes on the wire and the transfers before it.
+    /// A frame by its number, when it was due by its periods, what it takes on the wire and the transfers
+    /// before it.
     struct Frame {
         double number, due, wire, reads;
     };
-
-    void gather_counts(const Experiment& experiment, const Observable& host) {
-        for (std::size_t i = 0; i < host.y.size(); ++i) {
-            const auto [number, period] = frame_count(experiment.runs[host.run[i]], host.row[i]);
-            periods_.push_back(number * period);
-            count_.push_back(number);
-        }
-    }
-
-    /// All frames, whether they arrived or not, for when each is ready.
-    void gather_frames(const Experiment& experiment, const Rows& rows, const Observable& whole,
-                       const std::vector<std::uint32_t>& used) {
+    /// Columns of what is on the wire.
+    struct Line {
         std::vector<double> bytes, baud, reads;
-        rows.take(used, {{bytes, "bytes"}, {baud, "baud", kBaud}, {reads, "i2c_reads"}});
-        for (std::size_t i = 0; i < whole.y.size(); ++i) {
-            const auto [number, period] = frame_count(experiment.runs[whole.run[i]], whole.row[i]);
-            frames_.push_back({number, number * period, bytes[i] * kBits / baud[i], reads[i]});
+    };
+
+    static std::vector<Frame> frames_of(const Experiment& experiment, const Observable& rows,
+                                        const Line& line) {
+        std::vector<Frame> frames;
+        for (std::size_t i = 0; i < rows.y.size(); ++i) {
+            const auto [number, period] = frame_count(experiment.runs[rows.run[i]], rows.row[i]);
+            frames.push_back({number, number * period, line.bytes[i] * kBits / line.baud[i], line.reads[i]});
         }
+        return frames;
     }
 
-    /// A clock that was computed from the periods themselves has no noise that could be fitted.
-    bool keeps_to_periods(const Observable& clock) const {
-        double zero = 0.0;
-        for (std::size_t i = 0; i < clock.y.size(); ++i) {
-            if (clock.starts[i] != 0) zero = clock.y[i] - periods_[i];
-            if (std::abs(clock.y[i] - periods_[i] - zero) > clock.instrument.quantum / 2) return false;
-        }
-        return true;
-    }
-
-    /// Its rounding measures nothing.
+    /// A clock that was computed from the periods themselves has no noise that could be fitted, and its
+    /// rounding measures nothing.
     void take_periods(Observable& clock) const {
-        clock.fixed_sd = clock.instrument.quantum;
-        double zero = 0.0;
+        double zero = 0.0, off = 0.0;
+        std::vector<double> kept;
         for (std::size_t i = 0; i < clock.y.size(); ++i) {
-            if (clock.starts[i] != 0) zero = clock.y[i] - periods_[i];
-            clock.y[i] = zero + periods_[i];
+            if (clock.starts[i] != 0) zero = clock.y[i] - arrived_[i].due;
+            off = std::max(off, std::abs(clock.y[i] - arrived_[i].due - zero));
+            kept.push_back(zero + arrived_[i].due);
         }
+        if (off > clock.instrument.quantum / 2) return;
+        clock.fixed_sd = clock.instrument.quantum;
+        clock.y = kept;
     }
 
     void gather_events(const Experiment& experiment) {
         // A lost frame has no arrival.
         const Rows rows(experiment, "", {});
-        std::vector<std::uint32_t> used;
         if (experiment.has("frame_ok")) {
-            ok_ = static_cast<int>(observables_.size());
+            ok_ = observables_.size();
+            Line line;
             // A frame that is broken because bytes shifted shows nothing that `shifted` does not.
-            const auto shifted = rows.column("shifted", 0);
-            observables_.push_back(rows.observable("frame_ok", NoiseKind::Event, used, shifted));
+            observables_.push_back(rows.observable("frame_ok", NoiseKind::Event,
+                                                   {{line.bytes, "bytes"},
+                                                    {line.baud, "baud", kBaud},
+                                                    {line.reads, "i2c_reads"},
+                                                    {edges_, "edges"},
+                                                    {ok_load_, "load"}},
+                                                   rows.column("shifted", 0)));
             observables_.back().time.clear();
-            if (!clocks_) gather_frames(experiment, rows, observables_.back(), used);
-            edges_ = taken(rows.column("edges", 0), used);
+            if (!clocks_) frames_ = frames_of(experiment, observables_.back(), line);
             // Whether bytes shifted is known where the column is there.
-            ok_load_ = experiment.has("shifted") ? std::vector<double>(used.size(), 0.0)
-                                                 : taken(rows.column("load", 0), used);
+            if (experiment.has("shifted")) ok_load_.assign(ok_load_.size(), 0.0);
         }
         if (experiment.has("shifted")) {
-            shift_ = static_cast<int>(observables_.size());
-            observables_.push_back(rows.observable("shifted", NoiseKind::Event, used));
+            shift_ = observables_.size();
+            observables_.push_back(rows.observable("shifted", NoiseKind::Event, {{load_, "load"}}));
             observables_.back().time.clear();
-            load_ = taken(rows.column("load", 0), used);
         }
     }
 
@@ -361,32 +348,29 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     /// The first row of a run sets the zero.
-    template <class Value>
-    void sums(const Observable& o, std::vector<double>& mean, Value value) const {
-        mean.resize(o.y.size());
-        double zero = 0.0;
-        for (std::size_t i = 0; i < mean.size(); ++i) {
-            if (o.starts[i] != 0) zero = o.y[i] - value(i);
-            mean[i] = zero + value(i);
-        }
-    }
-
     void predict_clock(const Numbers& now, Predicted& p) const {
-        const double longer = now.extra_period;
-        sums(observables_[0], p.mean, [&](std::size_t i) { return periods_[i] + longer * count_[i]; });
+        const Observable& o = observables_[0];
+        p.mean.resize(o.y.size());
+        double zero = 0.0;
+        for (std::size_t i = 0; i < p.mean.size(); ++i) {
+            const double due = arrived_[i].due + now.extra_period * arrived_[i].number;
+            if (o.starts[i] != 0) zero = o.y[i] - due;
+            p.mean[i] = zero + due;
+        }
         p.extra.assign(now.period_jitter > 0 ? p.mean.size() : 0, now.period_jitter);
     }
 
     /// When a frame that is due by `clock` has come over the wire, up to the chain's zero.
-    double ready_at(const Numbers& now, double clock, double number, double wire, double reads) const {
+    double ready_at(const Numbers& now, double clock, const Frame& one) const {
         const double longer = clocks_ ? 0.0 : now.extra_period, slower = 1 / (1 + now.baud_error);
-        return clock * (1 + now.clock_drift) + longer * number + wire * slower + now.i2c_stretch * reads;
+        return clock * (1 + now.clock_drift) + longer * one.number + one.wire * slower +
+               now.i2c_stretch * one.reads;
     }
 
     std::vector<double> arrivals_ready(const Numbers& now) const {
         std::vector<double> ready(arrivals().y.size());
         for (std::size_t i = 0; i < ready.size(); ++i)
-            ready[i] = ready_at(now, robot_[i], count_[i], wire_[i], reads_[i]);
+            ready[i] = ready_at(now, robot_[i], arrived_[i]);
         return ready;
     }
 
@@ -414,7 +398,7 @@ class TimingModel final : public ModelOf<Numbers> {
 
     /// The chance that a frame is not given up because its batch comes too late.
     std::vector<double> in_time(const Numbers& now) const {
-        const Observable &whole = observables_[static_cast<std::size_t>(ok_)], &o = arrivals();
+        const Observable &whole = observables_[*ok_], &o = arrivals();
         std::vector<double> chance(whole.y.size(), 1.0);
         if (!(now.answer_limit > 0) || now.batch < shortest_ || is_fine_batch(now.batch)) return chance;
         const std::vector<double> ready = arrivals_ready(now);
@@ -428,7 +412,7 @@ class TimingModel final : public ModelOf<Numbers> {
             };
             for (; frame < chance.size() && before_next(frame); ++frame) {
                 const Frame& one = frames_[frame];
-                const double wait = grid.wait(ready_at(now, one.due, one.number, one.wire, one.reads));
+                const double wait = grid.wait(ready_at(now, one.due, one));
                 chance[frame] = 1 / (1 + std::exp((wait - now.answer_limit) / kEdge));
             }
         }
@@ -436,9 +420,9 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     void predict_frames(const Numbers& now, Predicted& p) const {
-        const Observable& o = observables_[static_cast<std::size_t>(ok_)];
+        const Observable& o = observables_[*ok_];
         const std::vector<double> kept_in_time = in_time(now);
-        const double error = std::max(now.edge_errors, 0.0), overrun = now.overrun, cut = now.truncation,
+        const double error = std::max(now.edge_errors, 0.0), cut = now.truncation,
                      stays = now.truncation_burst;
         p.mean.resize(o.y.size());
         // A frame after a broken one: more likely broken too (bursts), or less. Over frames that are missing
@@ -452,23 +436,23 @@ class TimingModel final : public ModelOf<Numbers> {
                 broken = std::clamp(usual + std::pow(kept, o.steps[i]) * (last - usual), 0.0, 1.0);
             }
             p.mean[i] = kWhole * std::pow(1 - std::min(error, 0.99), edges_[i]) *
-                        (1 - std::min(overrun * ok_load_[i], 0.99)) * (1 - broken) * kept_in_time[i];
+                        (1 - std::min(now.overrun * ok_load_[i], 0.99)) * (1 - broken) * kept_in_time[i];
         }
     }
 
     void predict_shifts(const Numbers& now, Predicted& p) const {
-        const double overrun = now.overrun;
-        p.mean.resize(load_.size());
-        for (std::size_t i = 0; i < p.mean.size(); ++i)
-            p.mean[i] = 1 - kWhole + overrun * load_[i];
+        fill_rows(p.mean, load_.size(), true,
+                  [&](std::size_t i) { return 1 - kWhole + now.overrun * load_[i]; });
     }
 
     bool clocks_ = false;
-    double rounding_ = 0.0;             // s, of the robot's clock
-    double shortest_ = kShortestBatch;  // s: what is shorter is no batch but the clocks' rounding
-    int ok_ = -1, shift_ = -1;
-    std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
-    std::vector<Frame> frames_;  // whole or not; empty where the robot's clock says when each was ready
+    double rounding_ = 0.0;                  // s, of the robot's clock
+    double shortest_ = kShortestBatch;       // s: what is shorter is no batch but the clocks' rounding
+    std::optional<std::size_t> ok_, shift_;  // of the observables
+    std::vector<double> robot_;              // s, the clock by which frames that arrived were due
+    std::vector<double> edges_, ok_load_, load_;
+    std::vector<Frame> arrived_;
+    std::vector<Frame> frames_;  // all, whole or not; empty where the robot's clock says when each was ready
 };
 
 }  // namespace

@@ -35,17 +35,6 @@ std::vector<SpeedJump> counted_jumps(const WheelCurve& curve) {
     return jumps;
 }
 
-}  // namespace
-
-double agenda_speed(double command) {
-    const double speed = std::abs(command);
-    if (speed < 1e-9) return 0.0;
-    const double ticks = std::floor(kTicksPerSecond / speed);
-    return std::copysign(kTicksPerSecond / std::max(ticks, 1.0), command);
-}
-
-namespace {
-
 double timer_speed(double command) {
     const double speed = std::min(std::abs(command), kFastest);
     if (speed < 1.0) return 0.0;
@@ -59,6 +48,13 @@ double speed_of(double command, MotorDriver driver) {
 }
 
 }  // namespace
+
+double agenda_speed(double command) {
+    const double speed = std::abs(command);
+    if (speed < 1e-9) return 0.0;
+    const double ticks = std::floor(kTicksPerSecond / speed);
+    return std::copysign(kTicksPerSecond / std::max(ticks, 1.0), command);
+}
 
 WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const Motor& motor) {
     WheelCurve curve;
@@ -114,9 +110,8 @@ void WheelCurve::unround(const WheelCurve& asked) {
     if (empty() || asked.empty()) return;
     CurveReader plan(asked);
     double offset = steps.front() - plan.at(time.front());
-    CurveReader again(asked);
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        const double planned = again.at(time[i]);
+        const double planned = plan.at(time[i]);
         if (std::abs(planned + offset - steps[i]) > kRounded) offset = steps[i] - planned;
         steps[i] = planned + offset;
     }

@@ -42,7 +42,7 @@ FittedParameter parameter_of(const Study& study, const Fit& fit, const Precision
             interval.low,
             interval.high,
             parameter.neutral,
-            parameter.simulator || overlay_takes(parameter.name),
+            overlay_takes(parameter.name),
             interval.as_likely};
 }
 
