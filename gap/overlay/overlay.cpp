@@ -11,26 +11,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 namespace puckloop::gap {
 
 namespace {
+
+/// Those that the world, the line or the crystals have under another name.
+// clang-format off
+const std::set<std::string_view> kOthers{
+    "wheel_scale", "wheel_mismatch", "inverse_friction",
+    "command.latency", "command.loss",
+    "ground.forward_error", "ground.left_error", "ground.raised",
+    "rab.strength_gain", "rab.far_floor", "rab.saturation", "rab.strength_spread", "rab.bearing_offset",
+    "rab.emitter_lobe", "rab.receiver_lobe", "rab.random_loss", "rab.beat", "rab.beat_burst", "rab.multipath",
+    "rab.multipath_loss",
+    "timing.truncation", "timing.clock_drift", "timing.truncation_burst", "timing.edge_errors",
+    "timing.i2c_stretch", "timing.batch", "timing.extra_period", "timing.period_jitter",
+};
+// clang-format on
+
+bool in_simulator(std::string_view parameter) {
+    int index = -1;
+    return physics::find_parameter(parameter, index) != nullptr;
+}
 
 /// One line, whatever the text holds: TOML knows no control characters in comments.
 std::string comment(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
     return "# " + text + "\n";
-}
-
-double get(const Values& values, const std::string& name, double neutral) {
-    const auto place = values.find(name);
-    return place == values.end() ? neutral : place->second;
-}
-
-bool in_simulator(const std::string& name) {
-    int index = -1;
-    return physics::find_parameter(name, index) != nullptr;
 }
 
 constexpr double kLeastSlip = 1e-3;  // of inverse_friction: no floor holds better
@@ -50,22 +61,23 @@ std::string parameter_line(const std::string& name, double value) {
 }
 
 /// Ratios of the motion model are radii of the world model.
-void wheels(const Experiment& experiment, const Values& fitted, Values& simulator) {
-    if (!fitted.contains("wheel_scale") && !fitted.contains("wheel_mismatch")) return;
-    const physics::Parameters defaults;
-    const double scale = 1 + get(fitted, "wheel_scale", 0), mismatch = get(fitted, "wheel_mismatch", 0);
-    const double both = get(experiment.nominal, "robot.wheel_radius", defaults.robot.wheel_radius_left);
+void wheels(const Experiment& experiment, Values& fitted, Values& simulator) {
+    const auto larger = take(fitted, "wheel_scale"), apart = take(fitted, "wheel_mismatch");
+    if (!larger && !apart) return;
+    const double scale = 1 + larger.value_or(0), mismatch = apart.value_or(0);
+    const double both =
+        experiment.nominal_or("robot.wheel_radius", physics::Parameters().robot.wheel_radius_left);
     simulator["robot.wheel_radius_left"] =
-        get(experiment.nominal, "robot.wheel_radius_left", both) * scale * (1 - mismatch);
+        experiment.nominal_or("robot.wheel_radius_left", both) * scale * (1 - mismatch);
     simulator["robot.wheel_radius_right"] =
-        get(experiment.nominal, "robot.wheel_radius_right", both) * scale * (1 + mismatch);
+        experiment.nominal_or("robot.wheel_radius_right", both) * scale * (1 + mismatch);
 }
 
 /// The ground board's place and height over the floor.
 void ground_board(const Experiment& experiment, Values& fitted, Values& simulator) {
     const physics::GroundParameters drawn = physics::Parameters().ground;
     const auto move = [&](double by, const std::string& place, double neutral) {
-        if (by != 0) simulator[place] = get(experiment.nominal, place, neutral) + by;
+        if (by != 0) simulator[place] = experiment.nominal_or(place, neutral) + by;
     };
     move(take(fitted, "ground.forward_error").value_or(0.0), "ground.x", drawn.x);
     move(take(fitted, "ground.raised").value_or(0.0), "ground.height", drawn.height);
@@ -75,6 +87,11 @@ void ground_board(const Experiment& experiment, Values& fitted, Values& simulato
 }
 
 }  // namespace
+
+bool overlay_takes(std::string_view parameter) {
+    return in_simulator(parameter) || kOthers.contains(parameter) ||
+           parameter.starts_with("rab.receiver_gain") || parameter.starts_with("rab.emitter_gain");
+}
 
 std::optional<double> take(Values& fitted, const std::string& name) {
     const auto taken = fitted.extract(name);
@@ -96,7 +113,6 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     ground_board(experiment, fitted, simulator);
     sensors_overlay(experiment, fitted, simulator);
     for (const auto& [name, value] : fitted) {
-        if (name == "wheel_scale" || name == "wheel_mismatch") continue;
         if (name == "inverse_friction")
             simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / std::max(value, kLeastSlip);
         else

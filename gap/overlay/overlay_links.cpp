@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace puckloop::gap {
 
@@ -25,30 +26,32 @@ class LinksOverlay {
 
     std::string text() {
         table("uart");
-        seconds("command.latency", "command_delay", kOwnCommandLatency);
+        if (const auto late = more("command.latency", kOwnCommandLatency))
+            line("command_delay", fmt::format("\"{:.9g} s\"", *late));
         // A record is lost with any of its bytes.
-        if (const double lost = more("command.loss"); lost > 0)
-            line("command_loss",
-                 number(1 - std::pow(1 - std::clamp(lost, 0.0, 0.999),
-                                     1 / static_cast<double>(protocols::kEpuckActuatorBytes))));
+        if (const auto lost = more("command.loss"))
+            share("command_loss", 1 - std::pow(1 - std::min(*lost, 0.999),
+                                               1 / static_cast<double>(protocols::kEpuckActuatorBytes)));
         if (const auto burst = fitted_.find("timing.truncation_burst");
             burst != fitted_.end() && burst->second < 0) {
             header_ +=
                 fmt::format("# {:.3g} of truncation_burst was found; a run takes 0 to 1\n", burst->second);
             fitted_.erase(burst);
         }
-        const bool cut = share("timing.truncation", "answer_cut");
-        if (cut) share("timing.truncation_burst", "answer_cut_again");
-        share("timing.edge_errors", "answer_edge_loss");
+        if (const auto cut = more("timing.truncation")) {
+            share("answer_cut", *cut);
+            share("answer_cut_again", more("timing.truncation_burst"));
+        }
+        share("answer_edge_loss", more("timing.edge_errors"));
         table("linux");
         seconds("timing.i2c_stretch", "i2c_hold");
         seconds("timing.batch", "tty_batch");
         seconds("timing.extra_period", "oversleep");
         seconds("timing.period_jitter", "oversleep_jitter");
         table("clock");
-        if (const double drift = more("timing.clock_drift"); drift != 0) {
+        if (const auto drift = more("timing.clock_drift")) {
             constexpr double kMost = 2e5;  // ppm, what a run takes
-            const double ppm = (1 / (1 + drift) - 1) * 1e6, taken = std::clamp(ppm, -kMost, kMost);
+            const double ppm = (1 / (1 + *drift) - 1) * 1e6, taken = std::clamp(ppm, -kMost, kMost);
             if (taken != ppm)
                 header_ += fmt::format("# {:.6g} ppm was found; a run takes -200000 to 200000\n", ppm);
             line("pic_error", fmt::format("\"{:.9g} ppm\"", taken));
@@ -57,40 +60,34 @@ class LinksOverlay {
     }
 
   private:
-    static std::string number(double value) { return fmt::format("{:.9g}", value); }
-
     /// The fitted value over what a run makes by itself: the nominal one where the experiment states it, else
-    /// `own`. Taken out if a run can have it.
-    double more(const std::string& name, double own = 0.0) {
+    /// `own`. Taken out if a run can have it; nothing where it is none.
+    std::optional<double> more(const std::string& name, double own = 0.0) {
         const auto place = fitted_.find(name);
-        if (place == fitted_.end()) return 0.0;
+        if (place == fitted_.end()) return std::nullopt;
         const auto known = nominal_.find(name);
         const double value = place->second - (known == nominal_.end() ? own : known->second);
-        if (value > 0 || either_sign(name)) fitted_.erase(place);
-        return value;
-    }
-    static bool either_sign(std::string_view name) {
-        return name == "timing.clock_drift" || name == "timing.extra_period";
+        const bool either_sign = name == "timing.clock_drift" || name == "timing.extra_period";
+        if (!(value > 0) && !either_sign) return std::nullopt;
+        fitted_.erase(place);
+        return value == 0 ? std::nullopt : std::optional(value);
     }
     void table(const char* name) { header_ = fmt::format("\n[{}]\n", name); }
     void line(const char* key, const std::string& value) {
         text_ += header_ + fmt::format("{} = {}\n", key, value);
         header_.clear();
     }
-    void seconds(const char* name, const char* key, double own = 0.0) {
+    void seconds(const char* name, const char* key) {
         constexpr double kLongest = 1.0;  // what a run takes
-        const double value = more(name, own);
-        const bool command = key == std::string_view("command_delay");
-        if (!(value > 0 || (value < 0 && either_sign(name)))) return;
-        const double taken = command ? value : std::clamp(value, -kLongest, kLongest);
-        if (taken != value)
-            header_ += fmt::format("# {} = {:.6g} s was found; a run takes -1 to 1 s\n", name, value);
+        const auto found = more(name);
+        if (!found) return;
+        const double taken = std::clamp(*found, -kLongest, kLongest);
+        if (taken != *found)
+            header_ += fmt::format("# {} = {:.6g} s was found; a run takes -1 to 1 s\n", name, *found);
         line(key, fmt::format("\"{:.9g} s\"", taken));
     }
-    bool share(const char* name, const char* key) {
-        const double value = more(name);
-        if (value > 0) line(key, number(std::min(value, 1.0)));
-        return value > 0;
+    void share(const char* key, std::optional<double> found) {
+        if (found) line(key, fmt::format("{:.9g}", std::min(*found, 1.0)));
     }
 
     const Values& nominal_;

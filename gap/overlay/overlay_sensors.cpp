@@ -7,30 +7,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 namespace puckloop::gap {
 
 namespace {
 
-/// Mean age that comes about by itself, where [nominal] does not tell it.
-struct Own {
-    const char* parameter;
-    double seconds;
-};
-constexpr std::array<Own, 2> kOwn{{
+/// Mean age (s) that comes about by itself, where [nominal] does not give it.
+constexpr std::pair<const char*, double> kOwn[] = {
     {"proximity.age", 0.5 / physics::kProximityRate},  // half a period of the library's sampling
     {"ground.lag", 0.005},                             // half of ground.period
-}};
+};
 
 constexpr const char* kSession = "accelerometer.session_bias";
 constexpr std::size_t kAxes = 3;
 
 void ages(const Experiment& experiment, Values& fitted, Values& simulator) {
-    for (const Own& own : kOwn) {
-        if (!experiment.nominal.contains(own.parameter) && !fitted.contains(own.parameter)) continue;
-        const double made = experiment.nominal_or(own.parameter, own.seconds);
-        simulator[own.parameter] = take(fitted, own.parameter).value_or(made) - made;
+    for (const auto& [parameter, own] : kOwn) {
+        if (!experiment.nominal.contains(parameter) && !fitted.contains(parameter)) continue;
+        const double made = experiment.nominal_or(parameter, own);
+        simulator[parameter] = take(fitted, parameter).value_or(made) - made;
     }
 }
 
@@ -80,7 +76,7 @@ void sensors_overlay(const Experiment& experiment, Values& fitted, Values& simul
 }
 
 bool made_by_firmware(const std::string& parameter) {
-    return std::any_of(kOwn.begin(), kOwn.end(), [&](const Own& own) { return parameter == own.parameter; });
+    return std::ranges::any_of(kOwn, [&](const auto& own) { return parameter == own.first; });
 }
 
 }  // namespace puckloop::gap

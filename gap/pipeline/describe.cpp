@@ -5,7 +5,7 @@
 #include "gap/diagnostics/heldout.h"
 #include "gap/fit/intervals.h"
 #include "gap/next_experiment/suggest.h"
-#include "gap/overlay/overlay_names.h"
+#include "gap/overlay/overlay_parts.h"
 #include "gap/predictive/check.h"
 #include "gap/stats/tails.h"
 #include "gap/validate/placements.h"
@@ -36,14 +36,8 @@ FittedParameter parameter_of(const Study& study, const Fit& fit, const Precision
     // A value that the solver left beside nothing, far below what the data could show, is nothing.
     const double value = fit.fitted.state.values[index], off = std::abs(value - parameter.neutral);
     const bool nothing = off < kNothing * (interval.high - interval.low);
-    return {parameter.name,
-            parameter.unit,
-            nothing ? parameter.neutral : value,
-            interval.low,
-            interval.high,
-            parameter.neutral,
-            overlay_takes(parameter.name),
-            interval.as_likely};
+    return {parameter.name, parameter.unit,    nothing ? parameter.neutral : value, interval.low,
+            interval.high,  parameter.neutral, overlay_takes(parameter.name),       interval.as_likely};
 }
 
 Cause cause_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t candidate,

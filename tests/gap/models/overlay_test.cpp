@@ -1,7 +1,7 @@
 // What a verdict's overlay says, and that every effect enters the simulator where its file puts it.
 
 #include "gap/effects/effect.h"
-#include "gap/overlay/overlay_names.h"
+#include "gap/overlay/overlay_parts.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/parameters.h"
 #include "scenarios/scenario.h"
