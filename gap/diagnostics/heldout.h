@@ -12,8 +12,7 @@
 namespace puckloop::gap {
 
 struct HeldFigures {
-    Held
-        all;  ///< errors in units of the noise; whether a gain is claimed and its sentence are left to others
+    Held all;  ///< errors in units of the noise; whether a gain is claimed, and how it is put, is for others
     std::vector<HeldObservable> observables;
 };
 

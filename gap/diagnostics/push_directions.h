@@ -15,15 +15,18 @@ struct Push {
     double turned = 0.0;      ///< about the axle, rad
 };
 
-/// One thing that could be common to pushes.
-struct PushDirection {
-    std::string where;      ///< "against the push before", "along one line of the room", ...
-    double pushes = 0.0;    ///< of which it holds
-    double expected = 0.0;  ///< of which it would hold by chance
-    double p_value = 1.0;   ///< of so many by chance, not corrected
+/// Most of the pushes lie where few should.
+struct PushPattern {
+    std::string where;      ///< "position x 0.4", "cmd left -400, cmd left in the previous row 400", "some
+                            ///< runs", "rows that were as likely not pushed", or a direction: "against the
+                            ///< push before", "along one line of the room"
+    double pushes = 0.0;    ///< there, each by its probability
+    double all = 0.0;       ///< pushes found anywhere
+    double expected = 0.0;  ///< there, if they came by chance
+    double p_value = 1.0;   ///< of so many there by chance
 };
 
-/// All that is asked.
-std::vector<PushDirection> push_directions(const std::vector<Push>& pushes);
+/// All that is asked of the directions; p values are not corrected. `all`: pushes found.
+std::vector<PushPattern> push_directions(const std::vector<Push>& pushes, double all);
 
 }  // namespace puckloop::gap

@@ -1,7 +1,6 @@
 #include "gap/diagnostics/pushes.h"
 
 #include "gap/decide/thresholds.h"
-#include "gap/diagnostics/push_directions.h"
 #include "gap/fit/filter.h"
 #include "gap/residual_model/free_form_cells.h"
 #include "gap/stats/exchange.h"
@@ -13,7 +12,6 @@
 #include <iterator>
 #include <map>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -170,8 +168,8 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
     Look look;
     look.at(by_place(experiment, rows, hoped));
     Look ways;
-    for (const PushDirection& one : push_directions(pushes_of(experiment, rows)))
-        ways.at({one.where, one.pushes, seen, one.expected, one.p_value});
+    for (PushPattern& one : push_directions(pushes_of(experiment, rows), seen))
+        ways.at(std::move(one));
     look.at(ways.least());
     look.at(by_run(rows, hoped));
     const PushPattern found = look.least();

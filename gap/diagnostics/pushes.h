@@ -5,25 +5,16 @@
 // a jump imitates.
 
 #include "gap/data/experiment.h"
+#include "gap/diagnostics/push_directions.h"
 #include "gap/fit/fit.h"
 #include "gap/models/model.h"
 
 #include <optional>
-#include <string>
 
 namespace puckloop::gap {
 
-/// Most of the pushes lie where few should.
-struct PushPattern {
-    std::string where;      ///< "position x 0.4", "cmd left -400, cmd left in the previous row 400", "some
-                            ///< runs", "rows that were as likely not pushed", or a direction
-    double pushes = 0.0;    ///< there, each by its probability
-    double all = 0.0;       ///< pushes found anywhere
-    double expected = 0.0;  ///< there, if they came by chance
-    double p_value = 1.0;   ///< of so many there by chance, corrected for every place that was looked at
-};
-
-/// Nothing when the pushes that the fit finds come by chance, or when there are none.
+/// Nothing when the pushes that the fit finds come by chance, or when there are none; else the pattern, its p
+/// corrected for every place that was looked at.
 std::optional<PushPattern> push_pattern(const Experiment& experiment, const Model& model, const State& state);
 
 }  // namespace puckloop::gap

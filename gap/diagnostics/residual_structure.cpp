@@ -45,21 +45,24 @@ std::vector<double> in_sectors(std::vector<double> heading, const std::vector<st
     return heading;
 }
 
-/// Value of a column in each row of the series; a derived column by run likewise.
-std::vector<double> gathered(const Series& series, const std::vector<const std::vector<double>*>& by_run) {
+/// A value in each row of the series, from what `column(run)` gives for each run.
+template <class Column>
+std::vector<double> gathered(const Experiment& experiment, const Series& series, const Column& column) {
+    std::vector<const std::vector<double>*> by_run;
+    for (std::size_t run = 0; run < experiment.runs.size(); ++run)
+        by_run.push_back(&column(run));
     std::vector<double> values(series.run.size(), NAN);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::vector<double>& column = *by_run[series.run[i]];
-        if (series.row[i] < column.size()) values[i] = column[series.row[i]];
+        const std::vector<double>& own = *by_run[series.run[i]];
+        if (series.row[i] < own.size()) values[i] = own[series.row[i]];
     }
     return values;
 }
 
 std::vector<double> of_column(const Experiment& experiment, const Series& series, std::string_view name) {
-    std::vector<const std::vector<double>*> by_run;
-    for (const Run& run : experiment.runs)
-        by_run.push_back(&run.column(name));
-    return gathered(series, by_run);
+    return gathered(
+        experiment,
+        series, [&](std::size_t run) -> const auto& { return experiment.runs[run].column(name); });
 }
 
 void add_conditions(const Experiment& experiment, const Series& series, std::vector<Covariate>& list) {
@@ -113,10 +116,10 @@ void add_derived(const Experiment& experiment, const Series& series, std::vector
     for (const Run& run : experiment.runs)
         derived.push_back(derived_of(run));
     const auto add = [&](const char* name, CovariateKind kind, std::vector<double> Derived::*member) {
-        std::vector<const std::vector<double>*> by_run;
-        for (const Derived& d : derived)
-            by_run.push_back(&(d.*member));
-        Covariate c{name, kind, gathered(series, by_run), {}};
+        const auto of_run = [&](std::size_t run) -> const auto& {
+            return derived[run].*member;
+        };
+        Covariate c{name, kind, gathered(experiment, series, of_run), {}};
         if (stats::varies(c.value)) list.push_back(std::move(c));
     };
     add("wheel speed", CovariateKind::Signed, &Derived::speed);
