@@ -25,7 +25,7 @@ constexpr std::size_t kManyRows = 20000;
 /// observable's unit.
 std::vector<double> residuals_of(const Observable& o, const Predicted& at_fit, const NoiseParameters& noise) {
     std::vector<double> residuals(o.y.size());
-    if (o.noise == NoiseKind::Level) {
+    if (adds_up(o)) {
         Innovations innovations;
         filter(o, at_fit, noise, innovations);
         for (std::size_t i = 0; i < residuals.size(); ++i)
@@ -53,40 +53,37 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
     const Model& model = study.model();
     const auto& observables = model.observables();
     const State& mode = fit.fitted.state;
-    Prediction at_fit;
-    model.predict(mode.values, at_fit);
-    std::vector<Discrepancies> discrepancies;
-    std::vector<std::vector<double>> measured;
-    for (std::size_t o = 0; o < observables.size(); ++o) {
-        measured.push_back(residuals_of(observables[o], at_fit[o], mode.noise[o]));
-        discrepancies.emplace_back(
-            observables[o], measured[o], covariates_for(study.experiment(), observables[o]),
-            observables[o].noise == NoiseKind::Level ? "added by a row" : "measured − simulated");
-    }
+    const Prediction at_fit = model.predicted(mode.values);
+    std::vector<std::vector<Discrepancy>> discrepancies;
+    for (std::size_t o = 0; o < observables.size(); ++o)
+        discrepancies.push_back(
+            discrepancies_of(observables[o], residuals_of(observables[o], at_fit[o], mode.noise[o]),
+                             covariates_for(study.experiment(), observables[o]),
+                             adds_up(observables[o]) ? "added by a row" : "measured − simulated"));
     RandomStream random(seed, fmt::format("gap/posterior {}", extended));
-    // values[o][k]: of observable o the curves of replicate k.
-    using Curves = std::vector<std::vector<double>>;
-    std::vector<std::vector<Curves>> values(observables.size());
     const auto replicate_until = [&](std::size_t count) {
-        const std::size_t so_far = values.front().size();
+        const std::size_t so_far = discrepancies.front().front().replicated.size();
         const auto states = posterior_states(model, fit.freed, mode, count - so_far, random);
-        for (auto& of_observable : values)
-            of_observable.resize(count);
+        for (auto& of_observable : discrepancies)
+            for (Discrepancy& one : of_observable)
+                one.replicated.resize(count);
         in_parallel(states.size(), study.threads(), [&](std::size_t k) {
             RandomStream own(seed, fmt::format("gap/replicate {} {}", extended, so_far + k));
-            Prediction drawn;
-            model.predict(states[k].values, drawn);
+            const Prediction drawn = model.predicted(states[k].values);
             for (std::size_t o = 0; o < observables.size(); ++o) {
                 Observable replicate = observables[o];
                 replicate.y = replicated(observables[o], drawn[o], states[k].noise[o], own);
-                values[o][so_far + k] =
-                    discrepancies[o].values_of(residuals_of(replicate, at_fit[o], mode.noise[o]));
+                const auto residuals = residuals_of(replicate, at_fit[o], mode.noise[o]);
+                for (Discrepancy& one : discrepancies[o])
+                    one.replicated[so_far + k] = one.values_of(residuals);
             }
         });
         std::vector<PredictiveCheck> checks;
-        for (std::size_t o = 0; o < observables.size(); ++o)
-            checks.push_back({observables[o].name, observables[o].unit, extended, static_cast<int>(count),
-                              discrepancies[o].curves(measured[o], values[o])});
+        for (std::size_t o = 0; o < observables.size(); ++o) {
+            checks.push_back({observables[o].name, observables[o].unit, extended, static_cast<int>(count), {}});
+            for (const Discrepancy& one : discrepancies[o])
+                checks.back().curves.push_back(one.judged());
+        }
         return checks;
     };
     const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;

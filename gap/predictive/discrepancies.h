@@ -6,7 +6,7 @@
 #include "gap/predictive/predictive.h"
 #include "gap/stats/structure.h"
 
-#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace puckloop::gap {
@@ -17,36 +17,20 @@ namespace puckloop::gap {
 /// over is the noise's business and never counts.)
 bool is_replicated(const Observable& observable);
 
-class Discrepancies {
-  public:
-    /// Marginal law, autocorrelation, means against each of the covariates (a value a row), spread per run.
-    /// `observable` must outlive it.
-    Discrepancies(const Observable& observable, const std::vector<double>& measured,
-                  const std::vector<stats::Covariate>& covariates, const std::string& residual);
+struct Discrepancy {
+    PredictiveCurve curve;  ///< envelope and p value still missing
+    /// The curve's values for the residuals of all rows.
+    std::function<std::vector<double>(const std::vector<double>& residuals)> values_of{};
+    std::vector<std::vector<double>> replicated{};  ///< its values, a data set each
 
-    /// Values of each curve at its places; `residuals` of all rows.
-    std::vector<std::vector<double>> values_of(const std::vector<double>& residuals) const;
-    /// All curves with the envelopes and p values of replicated residuals' values.
-    std::vector<PredictiveCurve>
-    curves(const std::vector<double>& measured,
-           const std::vector<std::vector<std::vector<double>>>& replicated) const;
-
-  private:
-    /// Rows put together at places: by the residual's size, a covariate, a run.
-    struct Grouping {
-        std::vector<int> place;  ///< of each row; -1: none
-        std::size_t count = 0;
-    };
-    void add_marginal(const std::vector<double>& measured, const std::string& residual);
-    void add_autocorrelation();
-    void add_covariate(const stats::Covariate& covariate, const std::string& residual);
-    void add_spread();
-
-    const Observable& observable_;
-    std::vector<PredictiveCurve> places_;  ///< names, labels and places; values still missing
-    std::vector<double> edges_;            ///< of the marginal law's bins
-    std::size_t lags_ = 0;
-    std::vector<Grouping> groupings_;  ///< of the covariates, then of runs
+    /// The curve with the envelope and p value of the replicated values.
+    PredictiveCurve judged() const;
 };
+
+/// Marginal law, autocorrelation, means against each of the covariates (a value a row), spread per run.
+/// `observable` must outlive them.
+std::vector<Discrepancy> discrepancies_of(const Observable& observable, const std::vector<double>& measured,
+                                          const std::vector<stats::Covariate>& covariates,
+                                          const std::string& residual);
 
 }  // namespace puckloop::gap

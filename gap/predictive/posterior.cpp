@@ -25,10 +25,10 @@ std::vector<State> posterior_states(const Model& model, const std::vector<Freed>
     const Layout layout(model, freed, kThorough);
     const auto size = static_cast<Eigen::Index>(layout.size());
     if (size == 0) return std::vector<State>(count, mode);
-    Eigen::VectorXd best(size), gradient;
-    layout.pack(mode, best.data());
-    const Weights even;
-    Objective objective(model, layout, mode, even);
+    const std::vector<double> fitted = layout.packed(mode);
+    const Eigen::Map<const Eigen::VectorXd> best(fitted.data(), size);
+    Objective objective(model, layout, mode, kEven);
+    Eigen::VectorXd gradient;
     Eigen::MatrixXd information;
     double here = -objective.slopes(best.data(), gradient, information);  // log posterior over proposal
     const Eigen::LLT<Eigen::MatrixXd> root(information);

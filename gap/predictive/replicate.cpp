@@ -28,20 +28,6 @@ bool keeps_to_step(const Observable& o) {
            });
 }
 
-/// Scale of the errors of each row in the observable's unit, without what rounding adds to it.
-class Scale {
-  public:
-    Scale(const Observable& o, const Predicted& p, const NoiseParameters& noise, bool rounds)
-        : size_(o, p, noise), rounding_(rounds ? o.instrument.quantum * o.instrument.quantum / 12 : 0.0) {}
-    double at(std::size_t i) const {
-        return std::sqrt(std::max(size_.at(i) * size_.at(i) - rounding_, kLeastScale * kLeastScale));
-    }
-
-  private:
-    RowSize size_;
-    double rounding_;
-};
-
 /// What a lapse adds; 0 in most rows.
 double lapse_of(const Predicted& p, std::size_t i, RandomStream& random) {
     if (p.lapse.empty() || random.uniform() >= p.lapse[i]) return 0.0;
@@ -50,8 +36,8 @@ double lapse_of(const Predicted& p, std::size_t i, RandomStream& random) {
 }
 
 /// First-order autoregression of t innovations, beside a line of unknown phase.
-void add_carried(const Observable& o, const Predicted& p, const NoiseParameters& noise, const Scale& scale,
-                 RandomStream& random, std::vector<double>& y) {
+void add_carried(const Observable& o, const Predicted& p, const NoiseParameters& noise,
+                 const std::vector<double>& scale, RandomStream& random, std::vector<double>& y) {
     const double nu = std::exp(noise.log_tail);
     const double omega = 2 * std::numbers::pi * p.line_frequency;
     const bool has_line = p.line_amplitude > 0.0 && !o.time.empty();
@@ -62,25 +48,25 @@ void add_carried(const Observable& o, const Predicted& p, const NoiseParameters&
             cosine = random.normal() / std::numbers::sqrt2;
             sine = random.normal() / std::numbers::sqrt2;
         }
-        const double sd = scale.at(i), news = student(nu, random);
+        const double sd = scale[i], news = student(nu, random);
         const double kept = starts ? 0.0 : std::pow(noise.carry, o.steps.empty() ? 1 : o.steps[i]);
         error = kept * error + std::sqrt(1 - kept * kept) * news;
         y[i] += sd * error + lapse_of(p, i, random);
         if (has_line)
-            y[i] += p.line_amplitude * (o.gate.empty() ? 1.0 : o.gate[i]) *
+            y[i] += p.line_amplitude * of_row(o.gate, i, 1.0) *
                     (cosine * std::cos(omega * o.time[i]) + sine * std::sin(omega * o.time[i]));
     }
 }
 
 /// A sum, row by row: each is drawn from what the filter foresees of it.
-void add_summed(const Observable& o, const Predicted& p, const NoiseParameters& noise, const Scale& scale,
-                RandomStream& random, std::vector<double>& y) {
+void add_summed(const Observable& o, const Predicted& p, const NoiseParameters& noise,
+                const std::vector<double>& scale, RandomStream& random, std::vector<double>& y) {
     const double drift = std::exp(noise.carry), nu = std::exp(noise.log_tail), memory = noise.memory;
     Walk walk{};
     Lever lever{};
     double pushed = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i) {
-        const double sd = scale.at(i), arm = of_row(p.lever, i) / sd;
+        const double sd = scale[i], arm = of_row(p.lever, i) / sd;
         double value = 0.0;
         if (i == 0 || o.starts[i] != 0) {
             const Beginning first = beginning(o, p, i);
@@ -124,7 +110,12 @@ std::vector<double> replicated(const Observable& o, const Predicted& p, const No
         return y;
     }
     const bool rounds = keeps_to_step(o);
-    const Scale scale(o, p, noise, rounds);
+    // Of the errors of each row in the observable's unit, without what rounding adds to it.
+    std::vector<double> scale;
+    const double rounding = rounds ? o.instrument.quantum * o.instrument.quantum / 12 : 0.0;
+    const RowSize size(o, p, noise);
+    for (std::size_t i = 0; i < y.size(); ++i)
+        scale.push_back(std::sqrt(std::max(size.at(i) * size.at(i) - rounding, kLeastScale * kLeastScale)));
     if (o.noise == NoiseKind::Level)
         add_summed(o, p, noise, scale, random, y);
     else

@@ -46,7 +46,7 @@ Picture measured_and_simulated(const Series& series, const Covariate& c) {
     chart.points(c.value, series.measured, kMeasured, "measured");
     for (const auto& [stage, colour, name, dashed] : kShown) {
         const stats::Band means =
-            stats::bootstrap_band(by_run(series, simulated(series, stage)), c.value, kBins, kCoverage, {});
+            stats::bootstrap_band(by_run(series, simulated(series, stage)), c.value, kBins, kCoverage, 1);
         chart.line(means.x, means.y, colour, name, dashed);
     }
     return {chart.svg(kWidth, kHeight),
@@ -77,7 +77,7 @@ Picture residuals(const Series& series, const Covariate& c, const char* title, s
     const std::vector<double> x = groups ? as_places(c, names) : c.value;
     for (const Shown& shown : kShown) {
         const stats::Band band = stats::bootstrap_band(by_run(series, left_over(series, shown.stage)), x,
-                                                       kBins, kCoverage, {.seed = seed, .permutations = 0});
+                                                       kBins, kCoverage, seed);
         for (std::size_t i = 0; groups && i < band.x.size(); ++i)
             chart.interval(band.x[i] + (shown.dashed ? -0.1 : 0.1), band.y[i], band.low[i], band.high[i],
                            shown.colour);

@@ -33,19 +33,12 @@ Component cells_of(const std::string& name, const std::vector<double>& values, i
     Component c;
     c.name = name;
     c.ordered = !label;
-    const std::vector<int> of_known =
-        stats::bins_of(stats::finite(values), c.cells, bins, label ? kFine : std::max(bins, kMiddle));
-    std::size_t next = 0;
-    for (const double value : values)
-        c.cell.push_back(std::isfinite(value) ? of_known[next++] : -1);
-    const auto sums = stats::sums_of_cells(c, [&](std::size_t i) { return values[i]; }),
-               counts = stats::sums_of_cells(c, [](std::size_t) { return 1.0; });
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-        c.at.push_back(sums[k] / std::max(counts[k], 1.0));
-        const auto code = static_cast<std::size_t>(std::max(c.at.back(), 0.0));
-        c.where.push_back(label
-                              ? name + " " + (code < labels.size() ? labels[code] : stats::plain(c.at.back()))
-                              : name + " = " + stats::plain(c.at.back()));
+    c.cell = stats::bins_of(values, c.cells, bins, label ? kFine : std::max(bins, kMiddle));
+    c.at = stats::means_at(c.cell, c.cells, values);
+    for (const double at : c.at) {
+        const auto code = static_cast<std::size_t>(std::max(at, 0.0));
+        c.where.push_back(label ? name + " " + (code < labels.size() ? labels[code] : stats::plain(at))
+                                : name + " = " + stats::plain(at));
     }
     return c;
 }
@@ -82,13 +75,10 @@ struct Lately {
 Lately lately(const std::vector<double>& x, const std::vector<double>& time,
               const std::vector<char>& starts) {
     Lately out;
-    std::size_t begin = 0, changed = 0;
-    bool ever = false;
+    std::size_t begin = 0, changed = 0;  // rows; the same: nothing changed yet
     for (std::size_t i = 0; i < x.size(); ++i) {
-        if (starts[i] != 0) {
-            begin = changed = i;
-            ever = false;
-        }
+        if (starts[i] != 0) begin = changed = i;
+        if (i > begin && x[i] != x[i - 1]) changed = i;
         out.before.push_back(i > begin ? x[i - 1] : NAN);
         double low = x[i], high = x[i];
         for (std::size_t k = i - std::min(kLately - 1, i - begin); k < i; ++k) {
@@ -97,11 +87,7 @@ Lately lately(const std::vector<double>& x, const std::vector<double>& time,
         }
         out.lowest.push_back(low);
         out.highest.push_back(high);
-        if (i > begin && x[i] != x[i - 1]) {
-            changed = i;
-            ever = true;
-        }
-        out.since.push_back(ever ? time[i] - time[changed] : NAN);
+        out.since.push_back(changed > begin ? time[i] - time[changed] : NAN);
     }
     return out;
 }

@@ -68,10 +68,10 @@ double Profile::range() const {
 }
 
 std::vector<int> bins_of(const std::vector<double>& x, int& count, int bins, int levels) {
-    std::vector<double> distinct = x;
-    std::ranges::sort(distinct);
+    std::vector<double> sorted = finite(x);
+    std::ranges::sort(sorted);
     std::vector<double> edges;  // upper ends of all bins but the last
-    std::vector<double> sorted = distinct;
+    std::vector<double> distinct = sorted;
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
     if (distinct.size() <= static_cast<std::size_t>(levels)) {
         edges.assign(distinct.begin(), distinct.end() - (distinct.empty() ? 0 : 1));
@@ -84,10 +84,23 @@ std::vector<int> bins_of(const std::vector<double>& x, int& count, int bins, int
         }
     }
     count = static_cast<int>(edges.size()) + 1;
-    std::vector<int> bin(x.size());
+    std::vector<int> bin(x.size(), -1);
     for (std::size_t i = 0; i < x.size(); ++i)
-        bin[i] = static_cast<int>(std::ranges::lower_bound(edges, x[i]) - edges.begin());
+        if (std::isfinite(x[i]))
+            bin[i] = static_cast<int>(std::ranges::lower_bound(edges, x[i]) - edges.begin());
     return bin;
+}
+
+std::vector<double> means_at(const std::vector<int>& place, int count, const std::vector<double>& values) {
+    std::vector<double> sum(static_cast<std::size_t>(count), 0.0), rows = sum;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (place[i] < 0 || std::isnan(values[i])) continue;
+        sum[static_cast<std::size_t>(place[i])] += values[i];
+        rows[static_cast<std::size_t>(place[i])] += 1;
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k)
+        sum[k] = rows[k] > 0 ? sum[k] / rows[k] : NAN;
+    return sum;
 }
 
 Profile profile_of(const std::vector<double>& x, const std::vector<double>& y, int bins) {

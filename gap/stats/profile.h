@@ -16,8 +16,12 @@ struct Profile {
 };
 
 /// Bins with about equal counts; few distinct covariate values (at most `levels`) are bins by themselves.
-/// Bin number of every row; `count` receives how many there are.
+/// Bin number of every row, -1 where the covariate is not known; `count` receives how many there are.
 std::vector<int> bins_of(const std::vector<double>& x, int& count, int bins = 8, int levels = 12);
+
+/// Mean of the values at each of `count` places (a place a row, -1: none); NaN where there is none. Rows
+/// without a value are left out.
+std::vector<double> means_at(const std::vector<int>& place, int count, const std::vector<double>& values);
 
 Profile profile_of(const std::vector<double>& x, const std::vector<double>& y, int bins = 8);
 

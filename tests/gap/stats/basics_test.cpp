@@ -113,7 +113,8 @@ TEST_CASE("bootstrap intervals over runs cover a mean whose runs have offsets") 
                 if (y.run[i] == r) y.value[i] += offset;
         }
         std::vector<double> averages;
-        for (const auto& rows : bootstrap_rows(y, 200, {.seed = 5, .permutations = 200}, "mean")) {
+        RandomStream draws(5, "mean");
+        for (const auto& rows : bootstrap_rows(y, 200, draws)) {
             double sum = 0;
             for (const std::size_t i : rows)
                 sum += y.value[i];
