@@ -5,10 +5,7 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace puckloop::gap {
@@ -33,21 +30,17 @@ Lanes lanes_of(const Number& number) {
 
 /// Sinusoid of unknown phase: two amplitudes learnt row by row.
 struct Line {
-    std::array<double, 2> mean{};
-    double p00 = 0.5, p01 = 0.0, p11 = 0.5;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity() / 2;
 
     /// Takes what is known off the innovation, widens its variance, learns from it.
-    void filter(const std::array<double, 2>& h, double& innovation, double& variance) {
-        innovation -= h[0] * mean[0] + h[1] * mean[1];
-        const double g0 = p00 * h[0] + p01 * h[1], g1 = p01 * h[0] + p11 * h[1];
-        variance += h[0] * g0 + h[1] * g1;
+    void filter(const Eigen::Vector2d& h, double& innovation, double& variance) {
+        innovation -= h.dot(mean);
+        const Eigen::Vector2d gain = covariance * h;
+        variance += h.dot(gain);
         const double root = std::sqrt(variance);
-        const double pull = std::clamp(innovation / root, -kClip, kClip) / root;
-        mean[0] += g0 * pull;
-        mean[1] += g1 * pull;
-        p00 -= g0 * g0 / variance;
-        p01 -= g0 * g1 / variance;
-        p11 -= g1 * g1 / variance;
+        mean += gain * (std::clamp(innovation / root, -kClip, kClip) / root);
+        covariance -= gain * gain.transpose() / variance;
     }
 };
 
@@ -206,7 +199,7 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
     Line line;
     bool carried = false;
     Known last;
-    std::array<double, 2> last_h{};
+    Eigen::Vector2d last_h = Eigen::Vector2d::Zero();
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double sd = size.at(i);
         if (o.starts[i] != 0) {
@@ -228,11 +221,10 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
         double innovation = error - ahead.mean, variance = ahead.variance;
         if (has_line) {
             const double reach = p.line_amplitude * of_row(o.gate, i, 1.0) / sd;
-            const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
-                                            reach * std::sin(omega * o.time[i])};
-            const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
+            const Eigen::Vector2d own(reach * std::cos(omega * o.time[i]),
+                                      reach * std::sin(omega * o.time[i]));
+            line.filter(own - kept * last_h, innovation, variance);
             last_h = own;
-            line.filter(h, innovation, variance);
             ahead = {error - innovation, variance};
         }
         out.z[i] = innovation / std::sqrt(variance);

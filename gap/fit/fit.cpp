@@ -117,10 +117,7 @@ std::vector<RowCosts> costs_at(const Model& model, const State& state, const Pre
 
 double log_likelihood(const Model& model, const State& state) {
     const Layout none(model, {}, Effort{.noise = false});
-    const Weights even;
-    std::vector<double> x(std::max<std::size_t>(none.size(), 1));
-    none.pack(state, x.data());
-    return -Objective(model, none, state, even).value(x.data());
+    return -Objective(model, none, state, kEven).value(none.packed(state).data());
 }
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
@@ -128,8 +125,7 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
     const Layout layout(model, freed, effort);
     Fitted result;
     result.state = start;
-    std::vector<double> x(std::max<std::size_t>(layout.size(), 1));
-    layout.pack(start, x.data());
+    std::vector<double> x = layout.packed(start);
     for (std::size_t j = 0; j < layout.size(); ++j) {
         const auto [low, high] = layout.bounds(j);
         x[j] = std::clamp(x[j], low, high);

@@ -24,6 +24,7 @@ struct State {
 
 /// A weight a row, an observable each; empty: all 1.
 using Weights = std::vector<std::vector<double>>;
+inline const Weights kEven{};
 
 struct Fitted {
     State state;

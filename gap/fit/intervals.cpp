@@ -12,9 +12,8 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kSide = 0.95;  // of a 90 % interval
-constexpr double kSoftEdge =
-    0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie three of these on
+constexpr double kSide = 0.95;       // of a 90 % interval
+constexpr double kSoftEdge = 0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie 3 widths on
 constexpr int kLooks = 48;
 constexpr double kLeastRest = 0.5;      // of the information, at least, that is left without a block
 constexpr double kNearest = 1e-3;       // of the reach, the first look
@@ -104,12 +103,10 @@ Eigen::MatrixXd left_out_by_block(const Blocks& blocks, const Eigen::MatrixXd& g
 
 Precision precision_of(const Study& study, const Fit& fit) {
     const Layout layout(study.model(), fit.freed, kThorough);
-    std::vector<double> x(std::max<std::size_t>(layout.size(), 1));
-    layout.pack(fit.fitted.state, x.data());
-    const Weights even;
+    const std::vector<double> x = layout.packed(fit.fitted.state);
     Eigen::VectorXd gradient;
     Eigen::MatrixXd information, g;
-    Objective(study.model(), layout, fit.fitted.state, even).slopes(x.data(), gradient, information, &g);
+    Objective(study.model(), layout, fit.fitted.state, kEven).slopes(x.data(), gradient, information, &g);
     const auto n = static_cast<Eigen::Index>(fit.freed.size());
     const Eigen::MatrixXd inverse =
         information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));

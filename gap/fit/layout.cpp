@@ -23,22 +23,22 @@ Layout::Layout(const Model& model, const std::vector<Freed>& freed, const Effort
                 noise_.emplace_back(o, k);
 }
 
-void Layout::pack(const State& state, double* x) const {
-    for (std::size_t j = 0; j < freed_.size(); ++j)
-        x[j] =
-            (state.values[static_cast<std::size_t>(freed_[j].index)] - freed_[j].centre) / freed_[j].prior_sd;
-    for (std::size_t k = 0; k < noise_.size(); ++k) {
-        NoiseParameters copy = state.noise[noise_[k].first];
-        x[freed_.size() + k] = noise_parameter(copy, noise_[k].second);
+std::vector<double> Layout::packed(const State& state) const {
+    std::vector<double> x;
+    for (const Freed& one : freed_)
+        x.push_back((state.values[one.index] - one.centre) / one.prior_sd);
+    for (const auto& [observable, index] : noise_) {
+        NoiseParameters copy = state.noise[observable];
+        x.push_back(noise_parameter(copy, index));
     }
+    return x;
 }
 
 void Layout::unpack(const double* x, State& state) const {
-    for (std::size_t j = 0; j < freed_.size(); ++j)
-        state.values[static_cast<std::size_t>(freed_[j].index)] =
-            std::clamp(freed_[j].centre + x[j] * freed_[j].prior_sd, freed_[j].low, freed_[j].high);
-    for (std::size_t k = 0; k < noise_.size(); ++k)
-        noise_parameter(state.noise[noise_[k].first], noise_[k].second) = x[freed_.size() + k];
+    for (const Freed& one : freed_)
+        state.values[one.index] = std::clamp(one.centre + *x++ * one.prior_sd, one.low, one.high);
+    for (const auto& [observable, index] : noise_)
+        noise_parameter(state.noise[observable], index) = *x++;
 }
 
 std::pair<double, double> Layout::bounds(std::size_t j) const {

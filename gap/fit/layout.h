@@ -20,7 +20,7 @@ class Layout {
     std::size_t observable(std::size_t j) const { return noise_[j - freed_.size()].first; }
     int noise_index(std::size_t j) const { return noise_[j - freed_.size()].second; }
 
-    void pack(const State& state, double* x) const;
+    std::vector<double> packed(const State& state) const;
     /// Writes the numbers into `state`; model parameters are kept within their range.
     void unpack(const double* x, State& state) const;
     /// The least and the most that the number may be.

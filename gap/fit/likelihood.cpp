@@ -81,6 +81,22 @@ double pile_cost(const Predicted& p, double y, RowRole role) {
     return role == RowRole::High ? beside : beside + std::log(p.pile) + 0.5 * std::log(2 * kPi);
 }
 
+/// ln of a product of many factors, each at least 1 or near it, taken whenever it grows large.
+class LogProduct {
+  public:
+    void add(double factor) {
+        product_ *= factor;
+        if (product_ < kLarge && product_ > 1 / kLarge) return;
+        sum_ += std::log(product_ / factor) + std::log(factor);
+        product_ = 1.0;
+    }
+    double value() const { return sum_ + std::log(product_); }
+
+  private:
+    static constexpr double kLarge = 1e100;
+    double product_ = 1.0, sum_ = 0.0;
+};
+
 }  // namespace
 
 bool is_simple(const Predicted& predicted) {
@@ -120,26 +136,6 @@ void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& no
         if (!p.chance.empty()) cost[i] -= std::log(p.chance[i]);
     }
 }
-
-namespace {
-
-/// ln of a product of many factors, each at least 1 or near it, taken whenever it grows large.
-class LogProduct {
-  public:
-    void add(double factor) {
-        product_ *= factor;
-        if (product_ < kLarge && product_ > 1 / kLarge) return;
-        sum_ += std::log(product_ / factor) + std::log(factor);
-        product_ = 1.0;
-    }
-    double value() const { return sum_ + std::log(product_); }
-
-  private:
-    static constexpr double kLarge = 1e100;
-    double product_ = 1.0, sum_ = 0.0;
-};
-
-}  // namespace
 
 double cost_sum(const Observable& o, const Predicted& p, const NoiseParameters& noise,
                 const Innovations& innovations, const std::vector<double>& weights) {
@@ -196,43 +192,31 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
 }
 
 void slopes_of(const Observable& o, const NoiseParameters& noise, const Innovations& innovations,
-               std::vector<double>& slope, std::vector<double>& curvature) {
+               RowSlopes& out) {
     const std::size_t n = o.y.size();
-    slope.resize(n);
-    curvature.resize(n);
+    out.slope.assign(n, 0.0);
+    out.curvature.assign(n, 0.0);
+    out.tail.assign(n, 0.0);
     const double nu = std::exp(noise.log_tail), expected = (nu + 1) / (nu + 3);
+    const double constant = (boost::math::digamma((nu + 1) / 2) - boost::math::digamma(nu / 2) - 1 / nu) / 2;
     for (std::size_t i = 0; i < n; ++i) {
-        const double z = innovations.z[i];
+        const double z = innovations.z[i], q = z * z / nu;
         const RowRole role = innovations.role[i];
         if (role == RowRole::Plain) {
-            slope[i] = (nu + 1) * z / (nu + z * z);
-            curvature[i] = expected;
-        } else if (role == RowRole::First) {
-            slope[i] = curvature[i] = 0.0;
+            out.slope[i] = (nu + 1) * z / (nu + z * z);
+            out.curvature[i] = expected;
+            out.tail[i] = nu * (log_above(q) / 2 - (nu + 1) / (2 * nu) * q / (1 + q) - constant);
         } else if (role == RowRole::Event) {
-            slope[i] = o.y[i] > 0.5 ? -1 / z : 1 / (1 - z);
-            curvature[i] = 1 / (z * (1 - z));
-        } else {
+            out.slope[i] = o.y[i] > 0.5 ? -1 / z : 1 / (1 - z);
+            out.curvature[i] = 1 / (z * (1 - z));
+        } else if (is_cut(role)) {
             const double sign = role == RowRole::Low ? 1 : -1;
             const double hazard =
                 (1 - kLeastProbability) * stats::normal_density(z) / clip_likelihood(role, z);
             const double bend = hazard * (hazard + sign * z);
-            slope[i] = -sign * hazard;
-            curvature[i] = bend > 0 ? bend : hazard * hazard;
+            out.slope[i] = -sign * hazard;
+            out.curvature[i] = bend > 0 ? bend : hazard * hazard;
         }
-    }
-}
-
-void tail_slopes_of(const NoiseParameters& noise, const Innovations& innovations,
-                    std::vector<double>& slope) {
-    const double nu = std::exp(noise.log_tail);
-    const double constant = (boost::math::digamma((nu + 1) / 2) - boost::math::digamma(nu / 2) - 1 / nu) / 2;
-    slope.resize(innovations.z.size());
-    for (std::size_t i = 0; i < slope.size(); ++i) {
-        const double q = square(innovations.z[i]) / nu;
-        slope[i] = innovations.role[i] == RowRole::Plain
-                       ? nu * (log_above(q) / 2 - (nu + 1) / (2 * nu) * q / (1 + q) - constant)
-                       : 0.0;
     }
 }
 

@@ -29,11 +29,14 @@ double cost_sum(const Observable& observable, const Predicted& predicted, const 
 /// Is a row's cost a function of its z and its scale alone (no lapses, no dead zone)?
 bool is_simple(const Predicted& predicted);
 
-/// First derivative of each row's cost by z, and its curvature (expected over rows where that is known).
+/// How steeply each row's cost rises.
+struct RowSlopes {
+    std::vector<double> slope;      ///< first derivative by z
+    std::vector<double> curvature;  ///< second, expected over rows where that is known
+    std::vector<double> tail;  ///< of a plain row, by the ln of the degrees of freedom at fixed z; else 0
+};
 void slopes_of(const Observable& observable, const NoiseParameters& noise, const Innovations& innovations,
-               std::vector<double>& slope, std::vector<double>& curvature);
-/// Derivative of each plain row's cost by the ln of the degrees of freedom, at fixed z.
-void tail_slopes_of(const NoiseParameters& noise, const Innovations& innovations, std::vector<double>& slope);
+               RowSlopes& out);
 
 /// Expected curvature of a row's cost by ln scale, ln degrees of freedom and both.
 struct ScaleInformation {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace puckloop::gap {
 
@@ -88,12 +87,8 @@ NoiseParameters first_guess(const Observable& o, const Predicted& p) {
     }
     double sd = 1.0;
     if (!sizes.empty()) {
-        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-        std::nth_element(sizes.begin(), middle, sizes.end());
-        double mean = 0.0;
-        for (const double size : sizes)
-            mean += size / static_cast<double>(sizes.size());
-        sd = std::max({stats::kMadToSigma * *middle, 0.3 * mean, o.instrument.quantum / 4, 1e-9});
+        const double middle = stats::upper_median(sizes), mean = stats::mean(sizes);
+        sd = std::max({stats::kMadToSigma * middle, 0.3 * mean, o.instrument.quantum / 4, 1e-9});
     }
     guess.log_sd = std::log(sd);
     guess.log_tail = std::log(8.0);

@@ -115,7 +115,7 @@ void Objective::difference(std::size_t o, const Moved& moved, const Innovations&
         const auto k = as_index(i);
         const double dz = (other.z[i] - base.innovations.z[i]) / moved.step;
         column.shift[k] = dz;
-        column.gradient[k] = base.slope[i] * dz + (moved.tail ? base.tail[i] : 0.0);
+        column.gradient[k] = base.rows.slope[i] * dz + (moved.tail ? base.rows.tail[i] : 0.0);
         if (column.scales) {
             const double variance = base.innovations.variance[i];
             const double change = other.variance[i] - variance;
@@ -134,12 +134,12 @@ void Objective::difference(std::size_t o, const Moved& moved, const Innovations&
 /// Adds one observable's part.
 void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const {
     const Base& base = bases_[o];
-    const auto n = as_index(base.slope.size()), width = as_index(columns_[o].size());
+    const auto n = as_index(base.rows.slope.size()), width = as_index(columns_[o].size());
     if (width == 0) return;
     Eigen::VectorXd weights(n), bend(n);
-    for (std::size_t i = 0; i < base.slope.size(); ++i) {
+    for (std::size_t i = 0; i < base.rows.slope.size(); ++i) {
         weights[as_index(i)] = weight(o, i);
-        bend[as_index(i)] = std::sqrt(weight(o, i) * base.curvature[i]);
+        bend[as_index(i)] = std::sqrt(weight(o, i) * base.rows.curvature[i]);
     }
     if (!base.innovations.mixed.empty()) {
         gather_mixed(o, weights, gradient, curvature);
@@ -147,40 +147,36 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
     }
     const ScaleInformation information = scale_information(state_.noise[o]);
     Eigen::MatrixXd shifts(n, width), scales = Eigen::MatrixXd::Zero(n, width), others;
-    bool any_other = false, any_scale = false;
+    bool any_scale = false;
     double plain = 0.0;
-    for (std::size_t i = 0; i < base.slope.size(); ++i)
+    for (std::size_t i = 0; i < base.rows.slope.size(); ++i)
         if (base.innovations.role[i] == RowRole::Plain) plain += weight(o, i);
-    for (Eigen::Index a = 0; a < width; ++a) {
-        const Column& column = columns_[o][static_cast<std::size_t>(a)];
+    std::vector<Eigen::Index> at;  // place of each column
+    for (const Column& column : columns_[o]) {
+        const auto a = as_index(at.size());
+        at.push_back(as_index(column.number));
         shifts.col(a) = column.shift.cwiseProduct(bend);
         if (column.scales) scales.col(a) = column.scale.cwiseProduct(weights.cwiseSqrt());
         any_scale = any_scale || column.scales;
-        gradient[as_index(column.number)] += column.gradient.dot(weights);
+        gradient[at.back()] += column.gradient.dot(weights);
         if (column.other.size() == 0) continue;
-        if (!any_other) others = Eigen::MatrixXd::Zero(n, width);
-        any_other = true;
+        if (others.size() == 0) others = Eigen::MatrixXd::Zero(n, width);
         others.col(a) = column.other.cwiseProduct(weights.cwiseSqrt());
     }
     Eigen::MatrixXd part = Eigen::MatrixXd::Zero(width, width);
     part.selfadjointView<Eigen::Lower>().rankUpdate(shifts.transpose());
     if (any_scale) part.selfadjointView<Eigen::Lower>().rankUpdate(scales.transpose(), information.scale);
-    if (any_other) part.selfadjointView<Eigen::Lower>().rankUpdate(others.transpose());
-    for (Eigen::Index a = 0; a < width; ++a) {
-        const std::size_t row = columns_[o][static_cast<std::size_t>(a)].number;
-        for (Eigen::Index b = 0; b <= a; ++b) {
-            const std::size_t col = columns_[o][static_cast<std::size_t>(b)].number;
-            curvature(as_index(row), as_index(col)) += part(a, b);
-            if (row != col) curvature(as_index(col), as_index(row)) += part(a, b);
-        }
-        if (row < layout_.freed() || layout_.noise_index(row) != kTail) continue;
-        curvature(as_index(row), as_index(row)) += information.tail * plain;
-        for (Eigen::Index b = 0; b < width; ++b) {
-            const Column& column = columns_[o][static_cast<std::size_t>(b)];
+    if (others.size() > 0) part.selfadjointView<Eigen::Lower>().rankUpdate(others.transpose());
+    curvature(at, at) += Eigen::MatrixXd(part.selfadjointView<Eigen::Lower>());
+    for (const Eigen::Index tail : at) {
+        const auto number = static_cast<std::size_t>(tail);
+        if (number < layout_.freed() || layout_.noise_index(number) != kTail) continue;
+        curvature(tail, tail) += information.tail * plain;
+        for (const Column& column : columns_[o]) {
             if (!column.scales) continue;
             const double both = information.both * column.scale.dot(weights);
-            curvature(as_index(row), as_index(column.number)) += both;
-            curvature(as_index(column.number), as_index(row)) += both;
+            curvature(tail, as_index(column.number)) += both;
+            curvature(as_index(column.number), tail) += both;
         }
     }
 }
@@ -213,8 +209,7 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
     for (std::size_t o = 0; o < bases_.size(); ++o) {
         Base& base = bases_[o];
         base.cost.clear();
-        slopes_of(model_.observables()[o], state_.noise[o], base.innovations, base.slope, base.curvature);
-        tail_slopes_of(state_.noise[o], base.innovations, base.tail);
+        slopes_of(model_.observables()[o], state_.noise[o], base.innovations, base.rows);
         columns_[o].clear();
     }
     std::vector<double> near(x, x + width);
@@ -265,10 +260,10 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
     if (rows == nullptr) return sum;
     Eigen::Index first = 0, all = 0;
     for (const Base& base : bases_)
-        all += as_index(base.slope.size());
+        all += as_index(base.rows.slope.size());
     *rows = Eigen::MatrixXd::Zero(all, as_index(width));
     for (std::size_t o = 0; o < bases_.size(); ++o) {
-        const auto n = as_index(bases_[o].slope.size());
+        const auto n = as_index(bases_[o].rows.slope.size());
         for (const Column& column : columns_[o])
             rows->col(as_index(column.number)).segment(first, n) = column.gradient;
         first += n;

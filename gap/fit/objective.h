@@ -47,7 +47,7 @@ class Objective {
   private:
     struct Base {
         Innovations innovations;
-        std::vector<double> slope, curvature, tail;
+        RowSlopes rows;
         std::vector<double> cost;  ///< empty until it is needed
         Predicted filled;          ///< what the innovations are of; of an observable whose noise is known
         double sum = 0.0;

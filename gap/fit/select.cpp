@@ -30,15 +30,14 @@ constexpr double kGlimpse = 0.125;        // of kPromising, nats that a pair win
 constexpr std::size_t kPaired = 6;        // best alone that are tried two by two where none is enough
 constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
 
-/// The chosen set with `effect` replaced by `rival` (put last, so that its starts are tried).
-std::vector<std::size_t> replaced(std::vector<std::size_t> set, std::size_t effect, std::size_t rival) {
-    std::erase(set, effect);
-    set.push_back(rival);
+/// `effect` is put last, so that its starts are tried.
+std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) {
+    set.push_back(effect);
     return set;
 }
 
-std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) {
-    set.push_back(effect);
+std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t effect) {
+    std::erase(set, effect);
     return set;
 }
 
@@ -87,7 +86,23 @@ class Search::Steps {
 
     void find_rivals(Selection& selection) {
         result_ = std::move(selection);
-        find_draws();
+        report("looking for rivals", 0.8);
+        look_at_part();
+        std::vector<Draw> draws = draws_to_fit();
+        in_parallel(draws.size(), study_.threads(), [&](std::size_t k) {
+            Draw& draw = draws[k];
+            if (draw.fit.effects.empty())
+                draw.fit = in_its_place(draw.chosen, draw.rival, result_.chosen.bic + kDraw);
+        });
+        for (Draw& draw : draws) {
+            draw.delta_bic = draw.fit.bic - result_.chosen.bic;
+            if (!(draw.delta_bic <= kDraw)) continue;
+            draw.held = study_.gain(study_.hold_out(draw.fit), result_.held_chosen);
+            result_.draws.push_back(std::move(draw));
+        }
+        std::ranges::stable_sort(result_.draws, {}, [](const Draw& draw) {
+            return std::pair(std::max(draw.delta_bic, kTie), draw.delta_bic < kTie ? draw.rival : 0);
+        });
         selection = std::move(result_);
     }
 
@@ -112,12 +127,16 @@ class Search::Steps {
         return others;
     }
 
-    Gain gain(const HeldOut& before, const HeldOut& better) const { return study_.gain(before, better); }
-
     void choose(Fit fit, HeldOut held) {
         result_.chosen = std::move(fit);
         result_.held_chosen = std::move(held);
     }
+
+    /// How an effect did by itself.
+    struct Alone {
+        double won = 0.0;            ///< of BIC
+        std::vector<double> values;  ///< where the parameters stood, if it won anything
+    };
 
     /// A set that is fitted already, an effect to be put beside it, and the BIC that both have to better.
     struct Pair {
@@ -143,13 +162,11 @@ class Search::Steps {
     /// `state` with an effect where it stood when it was tried alone: beside another, a fit from nothing may
     /// not find it.
     State with_alone(std::size_t effect, State state) const {
-        const auto known = alone_state_.find(effect);
-        if (known == alone_state_.end()) return state;
-        for (const Freed& freed : candidate(effect).freed) {
-            const auto index = freed.index;
-            if (state.values[index] == study_.model().parameters()[index].neutral)
-                state.values[index] = known->second[index];
-        }
+        const auto known = alone_.find(effect);
+        if (known == alone_.end() || known->second.values.empty()) return state;
+        for (const Freed& freed : candidate(effect).freed)
+            if (state.values[freed.index] == study_.model().parameters()[freed.index].neutral)
+                state.values[freed.index] = known->second.values[freed.index];
         return state;
     }
 
@@ -172,9 +189,9 @@ class Search::Steps {
         const double won = tried.front().won = first.fit.bic - both.bic;
         if (won < kScreen) return false;
         HeldOut held = study_.hold_out(both);
-        if (!enough(gain(result_.held_chosen, held), 2)) return false;
+        if (!enough(study_.gain(result_.held_chosen, held), 2)) return false;
         result_.steps.push_back({first.effect(), first.won, first_gain, true, ""});
-        result_.steps.push_back({both.effects.back(), won, gain(first_held, held), true, ""});
+        result_.steps.push_back({both.effects.back(), won, study_.gain(first_held, held), true, ""});
         choose(both, std::move(held));
         last_step_of_choice_ = std::move(tried);
         return true;
@@ -193,13 +210,13 @@ class Search::Steps {
         if (tried.empty() || tried.front().won < kPromising) return false;
         Fit both = study_.refined(tried.front().fit);
         HeldOut held = study_.hold_out(both);
-        if (!enough(gain(result_.held_chosen, held), 2)) return false;
+        if (!enough(study_.gain(result_.held_chosen, held), 2)) return false;
         for (const std::size_t effect : both.effects) {
             const auto alone = std::ranges::find_if(last_step_, [&](const TriedSet& one) {
                 return one.effect() != effect && contains(both.effects, one.effect());
             });
-            result_.steps.push_back(
-                {effect, alone->fit.bic - both.bic, gain(study_.hold_out(alone->fit), held), true, ""});
+            result_.steps.push_back({effect, alone->fit.bic - both.bic,
+                                     study_.gain(study_.hold_out(alone->fit), held), true, ""});
         }
         choose(std::move(both), std::move(held));
         last_step_of_choice_ = std::move(tried);
@@ -236,8 +253,8 @@ class Search::Steps {
             Trial& trial = result_.trials[one.effect()];
             if (chosen.effects.empty() || !trial.validated) trial.delta_bic = one.won;
             if (!chosen.effects.empty()) continue;
-            alone_[one.effect()] = one.won;
-            if (one.won > 0) alone_state_[one.effect()] = one.fit.fitted.state.values;
+            alone_[one.effect()].won = one.won;
+            if (one.won > 0) alone_[one.effect()].values = one.fit.fitted.state.values;
         }
         last_step_ = fits;
         if (fits.size() > kValidated) fits.resize(kValidated);
@@ -248,7 +265,7 @@ class Search::Steps {
         for (std::size_t k = 0; k < fits.size(); ++k) {
             if (fits[k].won < kScreen) continue;
             helds[k] = study_.hold_out(fits[k].fit);
-            gains[k] = gain(result_.held_chosen, helds[k]);
+            gains[k] = study_.gain(result_.held_chosen, helds[k]);
             Trial& trial = result_.trials[fits[k].effect()];
             trial.held = gains[k];
             trial.validated = true;
@@ -305,7 +322,7 @@ class Search::Steps {
             Trial& trial = result_.trials[tried[k]];
             const double delta = won * rows / few - parameters * std::log(rows);
             if (!trial.validated) trial.delta_bic = delta;
-            if (chosen.effects.empty()) alone_[tried[k]] = delta;
+            if (chosen.effects.empty()) alone_[tried[k]].won = delta;
         }
         std::ranges::sort(taken);
         std::vector<std::size_t> result;
@@ -324,13 +341,12 @@ class Search::Steps {
             changed = false;
             for (const std::size_t effect : std::vector(result_.chosen.effects)) {
                 if (result_.chosen.effects.size() < 2) break;
-                auto set = result_.chosen.effects;
-                std::erase(set, effect);
+                const auto set = without(result_.chosen.effects, effect);
                 if (needed_on_part(set, effect)) continue;
                 Fit fit = study_.fit_set(set, study_.without(effect, result_.chosen.fitted.state));
                 if (fit.bic > result_.chosen.bic + kClearBic) continue;
                 HeldOut held = study_.hold_out(fit);
-                if (enough(gain(held, result_.held_chosen))) continue;
+                if (enough(study_.gain(held, result_.held_chosen))) continue;
                 choose(std::move(fit), std::move(held));
                 std::erase_if(result_.steps, [&](const Trial& trial) { return trial.effect == effect; });
                 look_at_part();
@@ -340,8 +356,7 @@ class Search::Steps {
         for (const std::size_t effect : std::vector(result_.chosen.effects)) {
             if (effect == result_.chosen.effects.back()) continue;
             std::vector<std::size_t> rivals = others_than(result_.chosen.effects);
-            std::erase_if(rivals,
-                          [&](std::size_t rival) { return alone_[rival] < kNoRival * alone_[effect]; });
+            std::erase_if(rivals, [&](std::size_t rival) { return no_rival(rival, effect); });
             std::vector<Fit> fits(rivals.size());
             in_parallel(rivals.size(), study_.threads(), [&](std::size_t k) {
                 fits[k] = in_its_place(effect, rivals[k], result_.chosen.bic - kDraw);
@@ -372,7 +387,7 @@ class Search::Steps {
     /// The chosen set with `rival` in the place of `effect`. Of many rows a part may show clearly that its
     /// BIC will not be as good as `good_enough`: then its BIC is infinite and nothing is fitted.
     Fit in_its_place(std::size_t effect, std::size_t rival, double good_enough) const {
-        const auto set = replaced(result_.chosen.effects, effect, rival);
+        const auto set = with(without(result_.chosen.effects, effect), rival);
         const State from = study_.without(effect, result_.chosen.fitted.state);
         if (study_.part() == nullptr || !study_.part()->candidates()[rival].remark.empty())
             return study_.fit_set(set, from);
@@ -384,9 +399,7 @@ class Search::Steps {
         return study_.from_part(guess, from);
     }
 
-    void find_draws() {
-        report("looking for rivals", 0.8);
-        look_at_part();
+    std::vector<Draw> draws_to_fit() {
         std::vector<Draw> draws;
         for (const std::size_t effect : result_.chosen.effects)
             for (const std::size_t rival : others_than(result_.chosen.effects)) {
@@ -395,24 +408,13 @@ class Search::Steps {
                 Draw draw{effect, rival, 0.0, {}, {}};
                 const bool last = effect == result_.chosen.effects.back() && known(rival, draw.fit);
                 // An effect that alone said next to nothing of what the chosen one said is no rival of it.
-                if (!last && alone_[rival] < kNoRival * alone_[effect]) continue;
-                draws.push_back(std::move(draw));
+                if (last || !no_rival(rival, effect)) draws.push_back(std::move(draw));
             }
-        in_parallel(draws.size(), study_.threads(), [&](std::size_t k) {
-            Draw& draw = draws[k];
-            if (draw.fit.effects.empty())
-                draw.fit = in_its_place(draw.chosen, draw.rival, result_.chosen.bic + kDraw);
-        });
-        for (Draw& draw : draws) {
-            draw.delta_bic = draw.fit.bic - result_.chosen.bic;
-            if (!(draw.delta_bic <= kDraw)) continue;
-            draw.held = gain(study_.hold_out(draw.fit), result_.held_chosen);
-            result_.draws.push_back(std::move(draw));
-        }
-        const auto rank = [](const Draw& draw) {
-            return std::pair(std::max(draw.delta_bic, kTie), draw.delta_bic < kTie ? draw.rival : 0);
-        };
-        std::ranges::stable_sort(result_.draws, {}, rank);
+        return draws;
+    }
+
+    bool no_rival(std::size_t rival, std::size_t effect) {
+        return alone_[rival].won < kNoRival * alone_[effect].won;
     }
 
     /// The last step has tried `rival` in the place of the last choice.
@@ -442,9 +444,8 @@ class Search::Steps {
     std::size_t testable_ = 0;
     bool more_ = false;
     Selection result_;
-    std::map<std::size_t, double> alone_;                     // delta BIC at the first step
-    std::map<std::size_t, std::vector<double>> alone_state_;  // and where the parameters stood then
-    double on_part_ = 0.0;                                    // BIC of the chosen set on the study's part
+    std::map<std::size_t, Alone> alone_;  // of each effect that was tried at the first step
+    double on_part_ = 0.0;                // BIC of the chosen set on the study's part
     std::vector<TriedSet> last_step_, last_step_of_choice_;
     std::mutex reporting_;
     std::size_t begun_ = 0;  // pieces of work

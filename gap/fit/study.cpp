@@ -1,18 +1,16 @@
 #include "gap/fit/study.h"
 
-#include "base/random.h"
 #include "gap/data/columns.h"
 #include "gap/fit/objective.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/thinned.h"
-#include "gap/stats/shuffle.h"
+#include "gap/stats/exchange.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -24,8 +22,7 @@ namespace {
 constexpr double kLittleDrift = -9.0;  // ln of drift variance over noise variance
 constexpr std::size_t kMostFolds = 5;
 constexpr std::size_t kLeastBlocks = 16;  // fewer independent blocks make no interval
-constexpr std::size_t kEnoughRuns =
-    6;  // then whole runs are the blocks: parts of a run share its day and place
+constexpr std::size_t kEnoughRuns = 6;    // then runs are the blocks: parts of one share its day and place
 constexpr std::size_t kLeastBlockRows = 8;
 
 constexpr double kHeavyTail = 2.5, kLightTail = 20;  // degrees of freedom to begin at
@@ -61,14 +58,13 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, std::size_t
     const double neutral = model.parameters()[index].neutral;
     Freed freed{index,   parameter.low,        parameter.high,     parameter.prior_sd,
                 neutral, parameter.resolution, parameter.threshold};
-    if (neutral < parameter.low || neutral > parameter.high) {
-        const bool zero_is_off = neutral == 0.0;
-        if (zero_is_off)
-            freed.centre =
-                parameter.starts.empty() ? (parameter.low + parameter.high) / 2 : parameter.starts.front();
-        else  // another robot altogether: as wide about its own number
-            freed.low = std::min(freed.low, neutral - 3 * parameter.prior_sd),
-            freed.high = std::max(freed.high, neutral + 3 * parameter.prior_sd);
+    const bool within = neutral >= parameter.low && neutral <= parameter.high;
+    if (!within && neutral == 0.0) {  // off
+        freed.centre =
+            parameter.starts.empty() ? (parameter.low + parameter.high) / 2 : parameter.starts.front();
+    } else if (!within) {  // another robot altogether: as wide about its own number
+        freed.low = std::min(freed.low, neutral - 3 * parameter.prior_sd);
+        freed.high = std::max(freed.high, neutral + 3 * parameter.prior_sd);
     }
     return freed;
 }
@@ -129,11 +125,7 @@ State Study::in_part(const State& whole) const {
 }
 
 Fit Study::on_part(const Fit& whole) const {
-    Fit part;
-    part.effects = whole.effects;
-    part.freed = part_->freed_by(whole.effects);
-    part.fitted.state = in_part(whole.fitted.state);
-    return part_->refined(part);
+    return part_->refined({whole.effects, {in_part(whole.fitted.state)}, part_->freed_by(whole.effects)});
 }
 
 Fit Study::from_part(const Fit& guess, const State& from, const Effort& effort) const {
@@ -211,8 +203,6 @@ void Study::make_candidates() {
                 rounds = std::max(rounds, own.back().size());
             }
         }
-        if (candidate.freed.empty() && candidate.remark.empty())
-            candidate.remark = "nothing in this data depends on it";
         for (std::size_t round = 0; round < rounds; ++round) {
             std::vector<double> start;
             for (std::size_t j = 0; j < candidate.freed.size(); ++j)
@@ -220,7 +210,7 @@ void Study::make_candidates() {
                                                : own[j][std::min(round, own[j].size() - 1)]);
             candidate.starts.push_back(std::move(start));
         }
-        if (candidate.remark.empty() && moved_by(candidate).empty())
+        if (candidate.remark.empty() && (candidate.freed.empty() || moved_by(candidate).empty()))
             candidate.remark = "nothing in this data depends on it";
         candidates_.push_back(std::move(candidate));
     }
@@ -230,10 +220,8 @@ void Study::make_folds(std::uint64_t seed) {
     const std::size_t runs = experiment_.runs.size();
     const bool by_run = runs >= 3;
     folds_ = by_run ? std::min(kMostFolds, runs) : kMostFolds;
-    std::vector<std::size_t> order(runs);
-    std::iota(order.begin(), order.end(), std::size_t{0});
     RandomStream random(seed, "gap/folds");
-    stats::shuffle(std::span(order), random);
+    std::vector<std::size_t> order = stats::random_order(runs, random);
     // Repeats of one condition, and among them of one design, are dealt to different folds: what only they
     // show could not be learnt from the others.
     std::vector<std::string> design;
@@ -351,31 +339,29 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
         best.bic = bic;
         best.fitted = fitted;
     };
+    // A sum's drift would swallow what the effect explains: it has to earn itself anew.
+    std::vector<NoiseParameters> calm = from.noise;
+    bool drifts = false;
+    for (std::size_t o = 0; o < calm.size(); ++o) {
+        const Observable& one = model_->observables()[o];
+        if (!adds_up(one) || one.fixed_sd > 0) continue;
+        drifts = drifts || calm[o].carry > kLittleDrift;
+        calm[o].carry = std::min(calm[o].carry, kLittleDrift);
+    }
     // All starts quickly, the best to the end.
     for (const auto& start : last.starts) {
         State state = begun(last, start, from);
-        // A sum's drift would swallow what the effect explains: it has to earn itself anew.
-        for (std::size_t o = 0; o < state.noise.size(); ++o)
-            if (model_->observables()[o].noise == NoiseKind::Level && model_->observables()[o].fixed_sd <= 0)
-                state.noise[o].carry = std::min(state.noise[o].carry, kLittleDrift);
+        state.noise = calm;
         take_better(state, kQuick);
         if (lighten_tails(state)) take_better(fit(*model_, best.freed, state, {}, kPart).state, kQuick);
     }
     // Where another effect was dropped or replaced, this one already stands somewhere.
     const bool stands = std::ranges::any_of(last.freed, [&](const Freed& freed) {
-        const auto index = freed.index;
-        return from.values[index] != model_->parameters()[index].neutral;
+        return from.values[freed.index] != model_->parameters()[freed.index].neutral;
     });
     if (stands) take_better(from, kQuick);
     // A sum that really drifts cannot be begun without its drift.
-    const auto drifts = [&](std::size_t o) {
-        const Observable& one = model_->observables()[o];
-        return one.noise == NoiseKind::Level && one.fixed_sd <= 0 && from.noise[o].carry > kLittleDrift;
-    };
-    bool sums = false;
-    for (std::size_t o = 0; o < from.noise.size(); ++o)
-        sums = sums || drifts(o);
-    if (sums) take_better(begun(last, last.starts.front(), from), kQuick);
+    if (drifts) take_better(begun(last, last.starts.front(), from), kQuick);
     if (effort.iterations > kQuick.iterations) take_better(best.fitted.state, effort);
     return restarted(best);
 }
@@ -388,10 +374,8 @@ double Study::glance(const std::vector<std::size_t>& effects, const State& from)
 }
 
 State Study::without(std::size_t effect, State state) const {
-    for (const Freed& freed : candidates_[effect].freed) {
-        const auto index = freed.index;
-        state.values[index] = model_->parameters()[index].neutral;
-    }
+    for (const Freed& freed : candidates_[effect].freed)
+        state.values[freed.index] = model_->parameters()[freed.index].neutral;
     return state;
 }
 
@@ -458,23 +442,13 @@ HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
     return held;
 }
 
-void Study::add_gains(const HeldOut& before, const HeldOut& after, std::size_t observable,
-                      std::vector<double>& by_block) const {
-    const auto& block = blocks_.of[observable];
-    for (std::size_t i = 0; i < block.size(); ++i)
-        by_block[block[i]] += after.score[observable][i] - before.score[observable][i];
-}
-
-Gain Study::gain(const HeldOut& before, const HeldOut& after, std::size_t observable) const {
+Gain Study::gain(const HeldOut& before, const HeldOut& after, std::optional<std::size_t> observable) const {
     std::vector<double> by_block(blocks_.count, 0.0);
-    add_gains(before, after, observable, by_block);
-    return gain_of(by_block);
-}
-
-Gain Study::gain(const HeldOut& before, const HeldOut& after) const {
-    std::vector<double> by_block(blocks_.count, 0.0);
-    for (std::size_t o = 0; o < blocks_.of.size(); ++o)
-        add_gains(before, after, o, by_block);
+    for (std::size_t o = 0; o < blocks_.of.size(); ++o) {
+        if (observable && o != *observable) continue;
+        for (std::size_t i = 0; i < blocks_.of[o].size(); ++i)
+            by_block[blocks_.of[o][i]] += after.score[o][i] - before.score[o][i];
+    }
     return gain_of(by_block);
 }
 

@@ -7,6 +7,7 @@
 #include "gap/fit/fit.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,8 +85,7 @@ class Study {
     /// there.
     HeldOut hold_out(const Fit& fit, const Effort& effort = kPart) const;
     /// What `after` gains over `before` on rows that were not fitted, of all observables or of one.
-    Gain gain(const HeldOut& before, const HeldOut& after) const;
-    Gain gain(const HeldOut& before, const HeldOut& after, std::size_t observable) const;
+    Gain gain(const HeldOut& before, const HeldOut& after, std::optional<std::size_t> observable = {}) const;
     /// Weights that are 1 for the rows of some parts only: `in(part)`.
     template <class In>
     Weights rows_of_parts(const In& in) const {
@@ -109,8 +109,6 @@ class Study {
     bool lighten_tails(State& state) const;
     double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
-    void add_gains(const HeldOut& before, const HeldOut& after, std::size_t observable,
-                   std::vector<double>& by_block) const;
     std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
 
     std::unique_ptr<Experiment> own_;  // of a part

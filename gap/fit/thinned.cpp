@@ -18,8 +18,7 @@ Run stretch_of(const Run& run, std::size_t from, std::size_t to) {
     part.conditions = run.conditions;
     part.rows = to - from;
     const auto cut = [&](const std::vector<double>& values) {
-        return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(from),
-                                   values.begin() + static_cast<std::ptrdiff_t>(to));
+        return std::vector<double>(values.data() + from, values.data() + to);
     };
     for (const auto& [name, values] : run.columns)
         if (!values.empty()) part.columns.emplace(name, cut(values));

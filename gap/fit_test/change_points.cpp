@@ -7,8 +7,8 @@
 #include "gap/decide/thresholds.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/scores.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
-#include "gap/stats/series.h"
 #include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
@@ -28,28 +28,14 @@ constexpr std::size_t kSettled = 10;  // the last of them
 /// Rows of a run that follow each other.
 using Chain = stats::Stretch;
 
-std::vector<Chain> chains_of(const Observable& o) {
-    std::vector<Chain> chains;
-    for (std::size_t i = 0; i < o.y.size(); ++i) {
-        if (i == 0 || o.starts[i] != 0 || o.run[i] != o.run[i - 1])
-            chains.push_back({i, i, static_cast<int>(o.run[i])});
-        chains.back().last = i + 1;
-    }
-    return chains;
-}
-
 /// Answers of the rows from the jump on, a jump of one deviation.
 std::vector<double> trace_of(const Observable& o, const Predicted& p, const NoiseParameters& noise,
                              const Scores& scores, const Chain& longest) {
     std::vector<double> shift(o.y.size(), 0.0);
     const std::size_t at = longest.first + longest.size() / 3;
-    std::fill(shift.begin() + static_cast<std::ptrdiff_t>(at),
-              shift.begin() + static_cast<std::ptrdiff_t>(longest.last), row_sd(o, p, noise, at));
+    std::fill(shift.data() + at, shift.data() + longest.last, row_sd(o, p, noise, at));
     const auto answers = scores.answers(shift);
-    std::vector<double> trace;
-    for (std::size_t i = at; i < std::min(at + kTrace, longest.last); ++i)
-        trace.push_back(answers[i]);
-    return trace;
+    return {answers.data() + at, answers.data() + std::min(at + kTrace, longest.last)};
 }
 
 /// Standardised errors, far ones pulled in; 0 where a reading was clipped.
@@ -163,7 +149,7 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         const Observable& o = model.observables()[k];
         if (o.fixed_sd > 0 || o.noise == NoiseKind::Event) continue;
         if (is_rounding(o, state.noise[k])) continue;
-        const auto chains = chains_of(o);
+        const auto chains = stats::stretches_of(o.run, [&](std::size_t i) { return o.starts[i] != 0; });
         const auto longest = std::ranges::max_element(
             chains, [](const Chain& a, const Chain& b) { return a.size() < b.size(); });
         if (longest == chains.end() || longest->size() < thresholds::kJumpChain) continue;

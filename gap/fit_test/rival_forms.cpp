@@ -3,11 +3,11 @@
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit_test/scores.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace puckloop::gap {
 
@@ -28,7 +28,9 @@ struct Form {
     double (*bend)(const Row&);
 };
 
+/// The effect's own first.
 const Form kForms[] = {
+    {"its own", [](const Row& r) { return r.effect; }},
     {"its root", [](const Row& r) { return std::copysign(std::sqrt(std::abs(r.effect)), r.effect); }},
     {"its square", [](const Row& r) { return r.effect * std::abs(r.effect); }},
     {"with a soft end", [](const Row& r) { return std::tanh(r.effect); }},
@@ -44,43 +46,42 @@ std::vector<Row> rows_of(const Observable& o, const std::vector<double>& with,
                          const std::vector<double>& without, double& rms) {
     const std::size_t n = o.y.size();
     std::vector<Row> rows(n);
-    std::vector<double> sizes, length;
+    std::vector<double> sizes;
     double squares = 0.0;
-    std::size_t first = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const bool begins = i == 0 || o.starts[i] != 0;
-        if (i == 0 || o.run[i] != o.run[i - 1]) first = i;
         double moved = with[i] - without[i];
-        if (o.noise == NoiseKind::Level) moved = begins ? 0.0 : moved - (with[i - 1] - without[i - 1]);
+        if (adds_up(o)) moved = begins ? 0.0 : moved - (with[i - 1] - without[i - 1]);
         if (!std::isfinite(moved)) moved = 0.0;
         rows[i].effect = moved;
         rows[i].before = begins ? moved : rows[i - 1].effect;
-        rows[i].place = static_cast<double>(i - first);
         squares += moved * moved;
         sizes.push_back(std::abs(moved));
     }
     rms = std::sqrt(squares / std::max<double>(static_cast<double>(n), 1.0));
     if (!(rms > 0)) return rows;
     const double middle = stats::median(sizes) / rms;
-    double last = 1.0;
-    for (std::size_t i = n; i-- > 0;) {
-        if (i + 1 == n || o.run[i + 1] != o.run[i]) last = std::max(rows[i].place, 1.0);
-        rows[i].place /= last;
-        rows[i].effect /= rms;
-        rows[i].before /= rms;
-        rows[i].middle = middle;
-    }
+    for (const stats::Stretch& run : stats::stretches_of(o.run))
+        for (std::size_t i = run.first; i < run.last; ++i) {
+            rows[i].place =
+                static_cast<double>(i - run.first) / std::max(static_cast<double>(run.size()) - 1, 1.0);
+            rows[i].effect /= rms;
+            rows[i].before /= rms;
+            rows[i].middle = middle;
+        }
     return rows;
 }
 
 /// What a form adds to each row's mean.
-std::vector<double> shift_of(const Observable& o, const std::vector<Row>& rows,
-                             const std::function<double(const Row&)>& bend) {
+std::vector<double> shift_of(const Observable& o, const std::vector<Row>& rows, const Form& form,
+                             double rms) {
     std::vector<double> shift;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const bool sums = o.noise == NoiseKind::Level && i > 0 && o.starts[i] == 0;
-        shift.push_back(bend(rows[i]) + (sums ? shift.back() : 0.0));
+        const bool sums = adds_up(o) && i > 0 && o.starts[i] == 0;
+        shift.push_back(form.bend(rows[i]) + (sums ? shift.back() : 0.0));
     }
+    for (double& one : shift)
+        one *= rms;
     return shift;
 }
 
@@ -89,7 +90,7 @@ struct Part {
     std::size_t observable;
     double freedom;                            ///< of Student's t
     std::vector<double> rest;                  ///< innovations without the effect
-    std::vector<std::vector<double>> answers;  ///< a form each; the first is the effect's own
+    std::vector<std::vector<double>> answers;  ///< a form each
 };
 
 double cost(double z, double freedom) {
@@ -135,15 +136,8 @@ std::vector<RivalForm> rival_forms(const Study& study, const Fit& fit, std::size
         const NoiseParameters& noise = fit.fitted.state.noise[k];
         const Scores scores(o, with[k], noise);
         Part part{k, std::exp(noise.log_tail), scores.innovations(), {}};
-        const auto add = [&](const std::function<double(const Row&)>& bend) {
-            auto shift = shift_of(o, rows, bend);
-            for (double& one : shift)
-                one *= rms;
-            part.answers.push_back(scores.answers(shift));
-        };
-        add([](const Row& row) { return row.effect; });
         for (const Form& form : kForms)
-            add(form.bend);
+            part.answers.push_back(scores.answers(shift_of(o, rows, form, rms)));
         for (std::size_t i = 0; i < part.rest.size(); ++i)
             part.rest[i] += part.answers[0][i];
         parts.push_back(std::move(part));
@@ -152,14 +146,14 @@ std::vector<RivalForm> rival_forms(const Study& study, const Fit& fit, std::size
     if (parts.empty()) return forms;
     const auto own = flat(parts, 0);
     const double own_amplitude = amplitude_of(parts, 0);
-    for (std::size_t f = 0; f < std::size(kForms); ++f) {
-        if (!(std::abs(stats::correlation(own, flat(parts, f + 1))) < kSameForm)) continue;
-        const double amplitude = amplitude_of(parts, f + 1);
+    for (std::size_t f = 1; f < std::size(kForms); ++f) {
+        if (!(std::abs(stats::correlation(own, flat(parts, f))) < kSameForm)) continue;
+        const double amplitude = amplitude_of(parts, f);
         std::vector<double> by_block(study.blocks().count, 0.0);
         for (const Part& part : parts)
             for (std::size_t i = 0; i < part.rest.size(); ++i)
                 by_block[study.blocks().of[part.observable][i]] +=
-                    cost(part.rest[i] - amplitude * part.answers[f + 1][i], part.freedom) -
+                    cost(part.rest[i] - amplitude * part.answers[f][i], part.freedom) -
                     cost(part.rest[i] - own_amplitude * part.answers[0][i], part.freedom);
         forms.push_back({kForms[f].words, gain_of(by_block)});
     }

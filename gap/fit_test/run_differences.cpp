@@ -2,6 +2,7 @@
 
 #include "gap/evidence/criterion.h"
 #include "gap/fit_test/scores.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tails.h"
 #include "gap/verdict/sentences.h"
@@ -27,14 +28,12 @@ constexpr double kSameShape = 0.999;   // correlation of two modes that are one
 /// What one run, or one batch of it, says of a number: score and information.
 struct Score {
     double g = 0.0, h = 0.0;
-    double known = 0.0;  ///< variance of g by what the simulator draws once a run
-    void add(double answer, double pull, double curvature) {
-        g += answer * pull;
-        h += answer * answer * curvature;
-    }
-    double estimate() const { return g / h; }
-    /// Of the estimate, where runs differ by nothing but what the simulator draws.
-    double variance(double spread) const { return spread / h + known / (h * h); }
+};
+
+/// What one run says of a number: its estimate, with a variance where runs differ by nothing but what the
+/// simulator draws.
+struct Estimate {
+    double value = 0.0, variance = 0.0;
 };
 
 struct Mode {
@@ -46,30 +45,29 @@ struct Mode {
 std::vector<Mode> modes_of(const Observable& o, const Predicted& p) {
     const std::size_t n = o.y.size();
     std::vector<Mode> modes;
-    if (o.noise != NoiseKind::Level) modes.push_back({"offset", o.unit, std::vector<double>(n, 1.0)});
+    if (!adds_up(o)) modes.push_back({"offset", o.unit, std::vector<double>(n, 1.0)});
     if (o.noise == NoiseKind::Event) {
         modes.front().unit = "logits";  // said as shares of rows: how_runs_differ()
         return modes;
     }
     Mode share{"share of what is predicted", kShare, p.mean};
-    if (o.noise == NoiseKind::Level) {
+    if (adds_up(o)) {
         Mode drift{"drift", o.unit + "/s", std::vector<double>(n, 0.0)};
-        std::size_t first = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (i == 0 || o.run[i] != o.run[i - 1]) first = i;
-            share.shift[i] -= p.mean[first];
-            if (!o.time.empty()) drift.shift[i] = o.time[i] - o.time[first];
-        }
+        for (const stats::Stretch& run : stats::stretches_of(o.run))
+            for (std::size_t i = run.first; i < run.last; ++i) {
+                share.shift[i] -= p.mean[run.first];
+                if (!o.time.empty()) drift.shift[i] = o.time[i] - o.time[run.first];
+            }
         modes.push_back(std::move(drift));
     }
     modes.push_back(std::move(share));
     return modes;
 }
 
-/// Scores of each run, and how much wider than expected they scatter inside runs.
+/// What each run says, as far as scores scatter inside runs.
 struct ByRun {
-    std::vector<Score> run;
-    double spread = 1.0, freedom = 0.0;
+    std::vector<Estimate> run;
+    double freedom = 0.0;  ///< of how far they scatter
 };
 
 /// What the simulator draws once a run does to each run's score: variance.
@@ -99,11 +97,12 @@ ByRun by_run(const Observable& o, const Scores& scores, const std::vector<double
         const std::size_t count = std::clamp<std::size_t>(rows[o.run[i]] / kBatchRows, 1, kBatches);
         auto& of_run = batches[o.run[i]];
         of_run.resize(count);
-        of_run[seen[o.run[i]]++ * count / rows[o.run[i]]].add(answers[i], scores.pull()[i],
-                                                              scores.curvature());
+        Score& batch = of_run[seen[o.run[i]]++ * count / rows[o.run[i]]];
+        batch.g += answers[i] * scores.pull()[i];
+        batch.h += answers[i] * answers[i] * scores.curvature();
     }
-    ByRun result;
-    double within = 0.0;
+    std::map<std::uint32_t, Score> sums;
+    double within = 0.0, freedom = 0.0;
     for (const auto& [run, of_run] : batches) {
         Score sum;
         double squares = 0.0, informed = 0.0;
@@ -115,12 +114,15 @@ ByRun by_run(const Observable& o, const Scores& scores, const std::vector<double
             informed += 1;
         }
         if (!(sum.h > 0)) continue;
-        sum.known = known[run];
-        result.run.push_back(sum);
+        sums[run] = sum;
         within += squares - sum.g * sum.g / sum.h;
-        result.freedom += informed - 1;
+        freedom += informed - 1;
     }
-    if (result.freedom > 0) result.spread = std::max(within / result.freedom, kLeastSpread);
+    // How much wider than expected scores scatter inside runs.
+    const double spread = freedom > 0 ? std::max(within / freedom, kLeastSpread) : 1.0;
+    ByRun result{{}, freedom};
+    for (const auto& [run, sum] : sums)
+        result.run.push_back({sum.g / sum.h, spread / sum.h + known[run] / (sum.h * sum.h)});
     return result;
 }
 
@@ -132,31 +134,30 @@ double log_normal(double x, double variance) {
 struct Common {
     double mean = 0.0, log_likelihood = 0.0;
 };
-Common common_of(const std::vector<Score>& runs, double spread, double tau, std::size_t left_out) {
+Common common_of(const std::vector<Estimate>& runs, double tau, std::size_t left_out) {
     double weights = 0.0, sum = 0.0;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         if (r == left_out) continue;
-        const double weight = 1 / (tau * tau + runs[r].variance(spread));
+        const double weight = 1 / (tau * tau + runs[r].variance);
         weights += weight;
-        sum += weight * runs[r].estimate();
+        sum += weight * runs[r].value;
     }
     Common result{sum / weights, 0.0};
     for (std::size_t r = 0; r < runs.size(); ++r)
         if (r != left_out)
-            result.log_likelihood +=
-                log_normal(runs[r].estimate() - result.mean, tau * tau + runs[r].variance(spread));
+            result.log_likelihood += log_normal(runs[r].value - result.mean, tau * tau + runs[r].variance);
     return result;
 }
 
-double best_tau(const std::vector<Score>& runs, double spread, std::size_t left_out) {
+double best_tau(const std::vector<Estimate>& runs, std::size_t left_out) {
     std::vector<double> doubts;
-    for (const Score& run : runs)
-        doubts.push_back(std::sqrt(run.variance(spread)));
+    for (const Estimate& run : runs)
+        doubts.push_back(std::sqrt(run.variance));
     const double unit = stats::median(doubts);
-    double best = 0.0, most = common_of(runs, spread, 0.0, left_out).log_likelihood;
+    double best = 0.0, most = common_of(runs, 0.0, left_out).log_likelihood;
     for (int k = 0; k < kGrid; ++k) {
         const double tau = unit * std::pow(10.0, -1 + 5.0 * k / (kGrid - 1));
-        const double one = common_of(runs, spread, tau, left_out).log_likelihood;
+        const double one = common_of(runs, tau, left_out).log_likelihood;
         if (one > most) most = one, best = tau;
     }
     return best;
@@ -185,21 +186,21 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     result.what = mode.what;
     std::vector<double> gains;
     for (std::size_t r = 0; r < n; ++r) {
-        const double tau = best_tau(runs, scores.spread, r), own = runs[r].variance(scores.spread);
-        const double random = runs[r].estimate() - common_of(runs, scores.spread, tau, r).mean,
-                     fixed = runs[r].estimate() - common_of(runs, scores.spread, 0.0, r).mean;
+        const double tau = best_tau(runs, r), own = runs[r].variance;
+        const double random = runs[r].value - common_of(runs, tau, r).mean,
+                     fixed = runs[r].value - common_of(runs, 0.0, r).mean;
         gains.push_back(log_normal(random, tau * tau + own) - log_normal(fixed, own));
     }
     const Gain gain = gain_of(gains);
     result.gain = gain.sum;
     result.sd = gain.sd;
-    result.size = best_tau(runs, scores.spread, n);
-    const double middle = common_of(runs, scores.spread, 0.0, n).mean;
+    result.size = best_tau(runs, n);
+    const double middle = common_of(runs, 0.0, n).mean;
     double between = 0.0, low = INFINITY, high = -INFINITY;
-    for (const Score& run : runs) {
-        between += std::pow(run.estimate() - middle, 2) / run.variance(scores.spread);
-        low = std::min(low, run.estimate());
-        high = std::max(high, run.estimate());
+    for (const Estimate& run : runs) {
+        between += std::pow(run.value - middle, 2) / run.variance;
+        low = std::min(low, run.value);
+        high = std::max(high, run.value);
     }
     const auto freedom = static_cast<double>(n - 1);
     const double reach =

@@ -5,9 +5,9 @@
 #include "gap/fit/study.h"
 #include "gap/residual_model/free_form_cells.h"
 #include "gap/residual_model/sum_form.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
-#include "gap/stats/shuffle.h"
 #include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>

@@ -8,7 +8,6 @@
 #include "gap/stats/robust.h"
 #include "gap/stats/series.h"
 #include "gap/verdict/sentences.h"
-#include "gap/verdict/verdict.h"
 
 #include <fmt/format.h>
 
@@ -50,24 +49,41 @@ Eigen::ArrayXd from_each_on(Eigen::ArrayXd answer) {
     return answer;
 }
 
+/// The sum at one share of its fitted drift.
+struct View {
+    SumResponse response;
+    std::vector<double> target;  ///< innovations, the wildest pulled in; 0 where there is none
+    std::vector<char> used;
+
+    View(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise)
+        : response(observable, predicted, noise), target(response.innovations()) {
+        const double limit = kTrim * std::max(stats::robust_scale(target), 1e-9);
+        for (double& z : target) {
+            used.push_back(std::isfinite(z) ? 1 : 0);
+            z = used.back() != 0 ? std::clamp(z, -limit, limit) : 0.0;
+        }
+    }
+};
+
 /// Columns of all cells and amounts, and what each says of the innovations in the rows of each fold.
 class Columns {
   public:
-    Columns(const SumResponse& response, const std::vector<stats::Component>& cells,
-            const std::vector<Amount>& amounts, const std::vector<double>& target, const stats::Parts& parts)
-        : response_(response), cells_(cells), amounts_(amounts), rows_(target.size()) {
+    Columns(const View& view, const std::vector<stats::Component>& cells, const std::vector<Amount>& amounts,
+            const stats::Parts& parts)
+        : response_(view.response), cells_(cells), amounts_(amounts), rows_(view.target.size()) {
         const auto folds = static_cast<Eigen::Index>(parts.folds);
         for (std::size_t a = 0; a < amounts.size(); ++a)
             for (std::size_t g = 0; g < cells.size(); ++g) {
                 Eigen::ArrayXXd pull = Eigen::ArrayXXd::Zero(cells[g].cells, folds), square = pull,
                                 above_square = pull;
-                response.respond(cells[g].cell, cells[g].cells, amounts[a].value,
-                                 [&](std::size_t i, const Eigen::ArrayXd& answer) {
-                                     pull.col(parts.fold[i]) += answer * target[i];
-                                     square.col(parts.fold[i]) += answer.square();
-                                     if (cells[g].ordered)
-                                         above_square.col(parts.fold[i]) += from_each_on(answer).square();
-                                 });
+                view.response.respond(cells[g].cell, cells[g].cells, amounts[a].value,
+                                      [&](std::size_t i, const Eigen::ArrayXd& answer) {
+                                          pull.col(parts.fold[i]) += answer * view.target[i];
+                                          square.col(parts.fold[i]) += answer.square();
+                                          if (cells[g].ordered)
+                                              above_square.col(parts.fold[i]) +=
+                                                  from_each_on(answer).square();
+                                      });
                 add(a, g, false, pull, square);
                 if (!cells[g].ordered) continue;
                 for (Eigen::Index c = pull.rows() - 1; c-- > 0;)
@@ -117,9 +133,9 @@ class Columns {
     }
 
     /// A column each of `kept`, a row each of the observable; 0 where a row says nothing.
-    Eigen::MatrixXd dense(const std::vector<std::size_t>& kept, std::size_t rows) const {
+    Eigen::MatrixXd dense(const std::vector<std::size_t>& kept) const {
         Eigen::MatrixXd matrix =
-            Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(kept.size()));
+            Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_), static_cast<Eigen::Index>(kept.size()));
         for (std::size_t from = 0; from < kept.size();) {
             const Column& first = columns_[kept[from]];
             std::size_t to = from;
@@ -160,21 +176,21 @@ class Columns {
 };
 
 /// Matching pursuit on the rows that are not held out: the columns it takes, the first one first.
-std::vector<std::size_t> pursued(const Columns& columns, const std::vector<double>& target,
-                                 const std::vector<char>& used, const stats::Parts& parts, int held) {
-    const auto n = static_cast<Eigen::Index>(target.size());
-    Eigen::VectorXd rest = Eigen::VectorXd::Zero(n);
-    double count = 0.0;
-    const auto seen = [&](std::size_t i) { return used[i] != 0 && parts.fold[i] != held; };
-    for (std::size_t i = 0; i < target.size(); ++i)
-        if (seen(i)) {
-            rest[static_cast<Eigen::Index>(i)] = target[i];
-            count += 1;
-        }
+std::vector<std::size_t> pursued(const Columns& columns, const View& view, const stats::Parts& parts,
+                                 int held) {
     const auto kept = columns.best(held);
-    Eigen::MatrixXd learnt = columns.dense(kept, target.size());
-    for (std::size_t i = 0; i < target.size(); ++i)
-        if (!seen(i)) learnt.row(static_cast<Eigen::Index>(i)).setZero();
+    Eigen::MatrixXd learnt = columns.dense(kept);
+    Eigen::VectorXd rest = Eigen::VectorXd::Map(view.target.data(), learnt.rows());
+    double count = 0.0;
+    for (Eigen::Index i = 0; i < rest.size(); ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        if (view.used[row] != 0 && parts.fold[row] != held) {
+            count += 1;
+            continue;
+        }
+        rest[i] = 0.0;
+        learnt.row(i).setZero();
+    }
     const Eigen::ArrayXd squares = learnt.colwise().squaredNorm().transpose().array().max(1e-12);
     std::vector<std::size_t> taken;
     while (taken.size() < kMostTerms && !kept.empty()) {
@@ -189,52 +205,20 @@ std::vector<std::size_t> pursued(const Columns& columns, const std::vector<doubl
     return taken;
 }
 
-std::vector<double> increments(const std::vector<double>& sum, const std::vector<char>& starts) {
-    std::vector<double> steps(sum.size(), 0.0);
-    for (std::size_t i = 1; i < sum.size(); ++i)
-        if (starts[i] == 0) steps[i] = sum[i] - sum[i - 1];
-    return steps;
-}
-
 std::vector<Amount> amounts_of(const Model& model, const Prediction& prediction, std::size_t o) {
     const Observable& own = model.observables()[o];
     std::vector<Amount> amounts{{"", "", std::vector<double>(own.y.size(), 1.0)}};
     for (std::size_t k = 0; k < prediction.size(); ++k) {
         const Observable& other = model.observables()[k];
         if (other.noise != NoiseKind::Level || other.fixed_sd > 0 || other.row != own.row) continue;
-        Amount one{other.name, other.unit, increments(prediction[k].mean, own.starts)};
+        Amount one{other.name, other.unit, std::vector<double>(own.y.size(), 0.0)};
+        for (std::size_t i = 1; i < one.value.size(); ++i)
+            if (own.starts[i] == 0) one.value[i] = prediction[k].mean[i] - prediction[k].mean[i - 1];
         const Eigen::Map<const Eigen::ArrayXd> value(one.value.data(),
                                                      static_cast<Eigen::Index>(one.value.size()));
         if (value.size() > 0 && std::sqrt(value.square().mean()) > kStill) amounts.push_back(std::move(one));
     }
     return amounts;
-}
-
-/// The sum at one share of its fitted drift.
-struct View {
-    SumResponse response;
-    std::vector<double> target;  ///< innovations, the wildest pulled in; 0 where there is none
-    std::vector<char> used;
-
-    View(const Observable& observable, const Predicted& predicted, NoiseParameters noise, double calmer)
-        : response(observable, predicted, calmed(noise, calmer)), target(response.innovations()) {
-        const double limit = kTrim * std::max(stats::robust_scale(target), 1e-9);
-        for (double& z : target) {
-            used.push_back(std::isfinite(z) ? 1 : 0);
-            z = used.back() != 0 ? std::clamp(z, -limit, limit) : 0.0;
-        }
-    }
-
-    static NoiseParameters calmed(NoiseParameters noise, double calmer) {
-        noise.carry += std::log(calmer);
-        return noise;
-    }
-};
-
-/// Where rows are many, covariates by themselves only: their pairs would take minutes.
-std::vector<stats::Component> affordable(std::vector<stats::Component> components, std::size_t rows) {
-    if (rows > kManyRows) std::erase_if(components, [](const stats::Component& one) { return one.pair; });
-    return components;
 }
 
 /// Runs of the same conditions repeat each other.
@@ -303,10 +287,12 @@ FreeFormTerm term_of(const Column& column, double move, const std::vector<stats:
 }  // namespace
 
 FreeForm sum_form_of(const Experiment& experiment, const Model& model, const State& state,
-                     const Prediction& prediction, std::size_t o,
-                     const std::vector<stats::Component>& components, std::uint64_t seed) {
+                     const Prediction& prediction, std::size_t o, std::vector<stats::Component> cells,
+                     std::uint64_t seed) {
     const Observable& observable = model.observables()[o];
-    const std::vector<stats::Component> cells = affordable(components, observable.y.size());
+    // Where rows are many, covariates by themselves only: their pairs would take minutes.
+    if (observable.y.size() > kManyRows)
+        std::erase_if(cells, [](const stats::Component& one) { return one.pair; });
     FreeForm form;
     form.observable = observable.name;
     form.unit = observable.unit;
@@ -319,8 +305,10 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
     std::vector<Columns> columns;
     views.reserve(std::size(kCalmer));
     for (const double calmer : kCalmer) {
-        views.emplace_back(observable, prediction[o], state.noise[o], calmer);
-        columns.emplace_back(views.back().response, cells, amounts, views.back().target, parts);
+        NoiseParameters noise = state.noise[o];
+        noise.carry += std::log(calmer);
+        views.emplace_back(observable, prediction[o], noise);
+        columns.emplace_back(views.back(), cells, amounts, parts);
     }
     // Without terms first; then with those that stand out at each share of the drift.
     const auto best_without = [&](int held, Correction& plain) {
@@ -345,7 +333,7 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
         Correction best = plain;
         std::vector<std::vector<std::size_t>> seen;
         for (std::size_t v = 0; v < views.size(); ++v) {
-            auto terms = pursued(columns[v], views[v].target, views[v].used, parts, held);
+            auto terms = pursued(columns[v], views[v], parts, held);
             if (terms.empty() || stats::contains(seen, terms)) continue;
             seen.push_back(terms);
             Correction one = corrected(columns[v], std::move(terms));

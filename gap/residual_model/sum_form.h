@@ -13,9 +13,9 @@
 
 namespace puckloop::gap {
 
-/// Of observable `o` of kind Level. `components` as free_form_cells() of its rows.
+/// Of observable `o` of kind Level. `cells` as free_form_cells() of its rows.
 FreeForm sum_form_of(const Experiment& experiment, const Model& model, const State& state,
-                     const Prediction& prediction, std::size_t o,
-                     const std::vector<stats::Component>& components, std::uint64_t seed);
+                     const Prediction& prediction, std::size_t o, std::vector<stats::Component> cells,
+                     std::uint64_t seed);
 
 }  // namespace puckloop::gap

@@ -155,13 +155,6 @@ double strength_for(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& penalty)
     return std::exp(high);
 }
 
-std::vector<double> strengths_of(const Grams& grams, const std::vector<Component>& components) {
-    std::vector<double> strengths;
-    for (std::size_t g = 0; g < components.size(); ++g)
-        strengths.push_back(strength_for(grams.all[g], penalty_of(components[g])));
-    return strengths;
-}
-
 /// Steps on the rows that are not held out.
 class Booster {
   public:
@@ -256,9 +249,6 @@ class Booster {
     std::vector<double> pulled_, pulls_;
 };
 
-/// Held-out gain over no correction at the given carry, by block, for each number of steps.
-using Gains = std::vector<std::vector<double>>;
-
 }  // namespace
 
 Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components, std::uint64_t seed) {
@@ -276,11 +266,14 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     std::vector<double> baseline(n, 0.0);
     std::vector<Grams> grams;
     std::vector<std::vector<double>> strengths;
-    std::vector<Gains> gains(carries.size(), Gains(kMostSteps + 1, std::vector<double>(blocks, 0.0)));
+    // Of each carry, for each number of steps: held-out gain over no correction, by block.
+    std::vector gains(carries.size(), std::vector(kMostSteps + 1, std::vector<double>(blocks, 0.0)));
     for (std::size_t c = 0; c < carries.size(); ++c) {
         const Design design(rows, components, carries[c]);
         grams.push_back(grams_of(design, components, fold, folds));
-        strengths.push_back(strengths_of(grams[c], components));
+        strengths.emplace_back();
+        for (std::size_t g = 0; g < components.size(); ++g)
+            strengths[c].push_back(strength_for(grams[c].all[g], penalty_of(components[g])));
         for (std::size_t k = 0; k < folds; ++k) {
             Booster booster(design, components, fold, static_cast<int>(k), grams[c], strengths[c]);
             bool more = true;

@@ -1,13 +1,13 @@
 #include "gap/stats/exchange.h"
 
 #include "gap/stats/robust.h"
-#include "gap/stats/shuffle.h"
 #include "gap/stats/tails.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace puckloop::gap::stats {
 
@@ -31,16 +31,6 @@ Pairs means_of(const Pairs& rows, const std::vector<Stretch>& stretches) {
         result.x.push_back(x / static_cast<double>(s.size()));
         result.y.push_back(y / static_cast<double>(s.size()));
         result.group.push_back(s.run);
-    }
-    return result;
-}
-
-std::vector<Stretch> plateaus(const Pairs& rows) {
-    std::vector<Stretch> result;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (result.empty() || result.back().run != rows.group[i] || rows.x[i] != rows.x[i - 1])
-            result.push_back({i, i, rows.group[i]});
-        result.back().last = i + 1;
     }
     return result;
 }
@@ -77,24 +67,27 @@ void take_off_run_means(Pairs& pairs, const std::vector<Stretch>& runs) {
 }
 
 void shuffle_blocks(const Pairs& pairs, RandomStream& random, std::vector<double>& y) {
-    std::vector<std::size_t> order;
-    std::size_t out = 0;
-    for (std::size_t first = 0; first < pairs.blocks.size();) {
-        std::size_t last = first;
-        while (last < pairs.blocks.size() && pairs.blocks[last].run == pairs.blocks[first].run)
+    std::vector<std::size_t> order(pairs.blocks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        while (last < order.size() && pairs.blocks[last].run == pairs.blocks[first].run)
             ++last;
-        order.clear();
-        for (std::size_t b = first; b < last; ++b)
-            order.push_back(b);
-        shuffle(std::span(order), random);
-        for (const std::size_t b : order)
-            for (std::size_t i = pairs.blocks[b].first; i < pairs.blocks[b].last; ++i)
-                y[out++] = pairs.y[i];
-        first = last;
+        shuffle(std::span(order).subspan(first, last - first), random);
     }
+    std::size_t out = 0;
+    for (const std::size_t b : order)
+        for (std::size_t i = pairs.blocks[b].first; i < pairs.blocks[b].last; ++i)
+            y[out++] = pairs.y[i];
 }
 
 }  // namespace
+
+std::vector<std::size_t> random_order(std::size_t count, RandomStream& random) {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    shuffle(std::span(order), random);
+    return order;
+}
 
 Pairs known_pairs(const Series& residual, const std::vector<double>& covariate) {
     Pairs rows;
@@ -110,8 +103,8 @@ Pairs known_pairs(const Series& residual, const std::vector<double>& covariate) 
 Pairs prepared(const Series& residual, const std::vector<double>& covariate) {
     Pairs rows = known_pairs(residual, covariate);
     if (rows.size() == 0) return rows;
-    if (const auto still = plateaus(rows); still.size() * kStandsStill <= rows.size())
-        rows = means_of(rows, still);
+    const auto still = stretches_of(rows.group, [&](std::size_t i) { return rows.x[i] != rows.x[i - 1]; });
+    if (still.size() * kStandsStill <= rows.size()) rows = means_of(rows, still);
     if (rows.size() > kMostUnits)
         rows = means_of(rows, blocks_of(rows.group, (rows.size() + kMostUnits - 1) / kMostUnits));
     std::vector<Stretch> runs = runs_of(rows.group);
@@ -181,12 +174,6 @@ double null_p(double observed, double units, const std::function<double(RandomSt
     };
     const double p = p_of_draws(options.permutations);
     return in_doubt(p) ? p_of_draws(kDrawsInDoubt * options.permutations) : p;
-}
-
-Finding begun(std::string_view test, std::string_view covariate, const Pairs& pairs) {
-    return {.test = std::string(test),
-            .covariate = std::string(covariate),
-            .units = static_cast<double>(pairs.blocks.size())};
 }
 
 Finding too_few(Finding finding, const Pairs& pairs) {

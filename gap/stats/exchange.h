@@ -4,12 +4,10 @@
 // 1. Rows where either is missing are dropped.
 // 2. A covariate that stands still for four rows or more on average (a distance at which 100 readings were
 //    taken, a condition of a whole run) gives one value a stretch: 100 readings of one placement share its
-//    error and count once.
-//    Of more than 3000 values, neighbours are averaged.
+//    error and count once. Of more than 3000 values, neighbours are averaged.
 // 3. What remains is cut into blocks of 2.5 times the correlation length (of y less its line on x). They are
-// exchanged inside their run if the
-//    covariate varies mostly inside runs and at least five blocks more than runs are there (each run's mean
-//    is then taken off); over all runs otherwise.
+//    exchanged inside their run if the covariate varies mostly inside runs and at least five blocks more
+//    than runs are there (each run's mean is then taken off); over all runs otherwise.
 // 4. A covariate that varies both ways, mostly between runs, gives one value a run.
 // p: (hits + 1) / (permutations + 1); with 20 units or more and few hits a gamma distribution with the first
 // three moments of the permuted statistics carries the tail farther, over five times the permutations where p
@@ -20,10 +18,35 @@
 #include "gap/stats/series.h"
 
 #include <functional>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap::stats {
+
+/// Rows cut into stretches: a new one where the run changes or `begins(row)`.
+template <class Run, class Begins = bool (*)(std::size_t)>
+std::vector<Stretch> stretches_of(
+    const std::vector<Run>& run, const Begins& begins = [](std::size_t) { return false; }) {
+    std::vector<Stretch> stretches;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        if (i == 0 || run[i] != run[i - 1] || begins(i))
+            stretches.push_back({i, i, static_cast<int>(run[i])});
+        stretches.back().last = i + 1;
+    }
+    return stretches;
+}
+
+/// Every order of `values` alike (Fisher and Yates, from the last one down).
+template <class T>
+void shuffle(std::span<T> values, RandomStream& random) {
+    for (std::size_t i = values.size(); i > 1; --i)
+        std::swap(values[i - 1], values[random.below(i)]);
+}
+
+/// 0 .. count - 1 in any order.
+std::vector<std::size_t> random_order(std::size_t count, RandomStream& random);
 
 /// A covariate and a residual, ready to be tested: rows are units that count.
 struct Pairs {
@@ -58,8 +81,7 @@ double null_p(double observed, double units, const std::function<double(RandomSt
 
 /// Units below which a test against a covariate is not asked.
 inline constexpr std::size_t kLeastUnits = 5;
-/// The finding of such a test, to be filled; or why it is not asked.
-Finding begun(std::string_view test, std::string_view covariate, const Pairs& pairs);
+/// The finding of such a test that is not asked.
 Finding too_few(Finding finding, const Pairs& pairs);
 /// Size of an effect over the residual's robust scale; 0 where there is none.
 double beside_scatter(double effect, const Series& residual);

@@ -11,16 +11,15 @@
 namespace puckloop::gap::stats {
 
 struct Finding {
-    std::string test{};       ///< "trend", "shape", "sign", "periodic", ...
-    std::string covariate{};  ///< against what; empty for tests of the series alone
-    double statistic = 0.0;
-    double p = 1.0;             ///< of this test alone
-    double p_adjusted = 1.0;    ///< after correction for all tests of the table
-    double effect = 0.0;        ///< size, in the residual's unit unless `effect_unit` is another
-    std::string effect_unit{};  ///< empty: the residual's own; else "", "fraction", "correlation", ...
-    double relative = 0.0;      ///< |effect| over the residual's robust scale (0 where that has no meaning)
-    double units = 0.0;         ///< independent values or groups the test stands on
-    std::string shape{};        ///< in words: "grows with distance, zero at zero"
+    std::string test{};             ///< "trend", "shape", "sign", "periodic", ...
+    std::string covariate{};        ///< against what; empty for tests of the series alone
+    double rank_correlation = 0.0;  ///< of a trend: Spearman's
+    double p = 1.0;                 ///< of this test alone
+    double p_adjusted = 1.0;        ///< after correction for all tests of the table
+    double effect = 0.0;            ///< size, in the residual's unit unless `effect_unit` is another
+    std::string effect_unit{};      ///< empty: the residual's own; else "", "fraction", "correlation", ...
+    double relative = 0.0;  ///< |effect| over the residual's robust scale (0 where that has no meaning)
+    std::string shape{};    ///< in words: "grows with distance, zero at zero"
 };
 
 /// The same with nothing found, for want of what `why` names.

@@ -28,7 +28,6 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
             const double f = static_cast<double>(list.size() - 1);
             squares += f * std::pow(standard_deviation(list), 2);
             freedom += f;
-            floor.repeats += list.size();
         }
         if (means.size() < 2) continue;
         const double f = static_cast<double>(means.size() - 1);

@@ -10,7 +10,6 @@ namespace puckloop::gap::stats {
 struct NoiseFloor {
     double within_run = 0.0;    ///< deviation of repeats inside a run about their mean; NaN without repeats
     double between_runs = 0.0;  ///< deviation of the means of one stimulus from run to run; NaN without such
-    std::size_t repeats = 0;    ///< rows that are repeats of others in their run
 };
 
 /// `stimulus`: rows with equal numbers got the same stimulus (see stimulus_numbers); negative: none known.

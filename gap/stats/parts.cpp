@@ -1,11 +1,9 @@
 #include "gap/stats/parts.h"
 
-#include "base/random.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/series.h"
-#include "gap/stats/shuffle.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace puckloop::gap::stats {
@@ -44,10 +42,8 @@ Parts parts_of(const std::vector<int>& run, std::uint64_t seed, const std::vecto
         return static_cast<std::size_t>(std::ranges::lower_bound(runs, one) - runs.begin());
     };
     if (runs.size() >= kEnoughRuns) {
-        std::vector<std::size_t> order(runs.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
         RandomStream random(seed, "gap/free form");
-        shuffle(std::span(order), random);
+        std::vector<std::size_t> order = random_order(runs.size(), random);
         if (!likeness.empty()) order = dealt(runs, order, likeness);
         parts.folds = std::min(kFolds, runs.size());
         parts.blocks = runs.size();

@@ -1,7 +1,6 @@
 #include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
-#include "gap/stats/shuffle.h"
 #include "gap/stats/tests.h"
 
 #include <fmt/format.h>
@@ -27,21 +26,16 @@ struct Segment {
 /// model.
 std::vector<Segment> segments_of(const Series& residual, const std::vector<double>& time) {
     std::vector<Segment> all;
-    for (const Stretch& s : runs_of(residual.run)) {
-        Segment now;
-        const auto close = [&] {
-            if (now.time.size() >= kLeastRows) all.push_back(now);
-            now = {};
-        };
-        for (std::size_t i = s.first; i < s.last; ++i) {
-            if (!std::isfinite(residual.value[i]) || !std::isfinite(time[i])) continue;
-            if (!now.time.empty() && time[i] <= now.time.back()) close();
-            now.time.push_back(time[i]);
-            now.value.push_back(residual.value[i]);
-            if (now.time.size() == kSegmentRows) close();
+    const Pairs known = known_pairs(residual, time);
+    const auto cut = [](const std::vector<double>& values, std::size_t first, std::size_t last) {
+        return std::vector<double>(values.data() + first, values.data() + last);
+    };
+    for (const Stretch& s :
+         stretches_of(known.group, [&](std::size_t i) { return known.x[i] <= known.x[i - 1]; }))
+        for (std::size_t first = s.first; first + kLeastRows <= s.last; first += kSegmentRows) {
+            const std::size_t last = std::min(first + kSegmentRows, s.last);
+            all.push_back({cut(known.x, first, last), cut(known.y, first, last)});
         }
-        close();
-    }
     std::vector<Segment> chosen;
     const std::size_t step = std::max<std::size_t>((all.size() + kSegments - 1) / kSegments, 1);
     for (std::size_t i = 0; i < all.size(); i += step)
@@ -137,21 +131,21 @@ double highest_line(const std::vector<double>& power, std::size_t& where) {
 
 /// Amplitude of the sine at `frequency` in the residual as it is, over all its rows.
 double amplitude_at(const Series& residual, const std::vector<double>& time, double frequency) {
-    double sum = 0, rows = 0;
-    for (const Stretch& s : runs_of(residual.run)) {
-        double c = 0, q = 0, n = 0, total = 0;
+    const Pairs known = known_pairs(residual, time);
+    double sum = 0;
+    for (const Stretch& s : runs_of(known.group)) {
+        double c = 0, q = 0, total = 0;
         for (std::size_t i = s.first; i < s.last; ++i)
-            if (std::isfinite(residual.value[i]) && std::isfinite(time[i]))
-                total += residual.value[i], n += 1;
+            total += known.y[i];
+        const auto n = static_cast<double>(s.size());
         for (std::size_t i = s.first; i < s.last; ++i) {
-            if (!std::isfinite(residual.value[i]) || !std::isfinite(time[i])) continue;
-            const double phase = 2 * std::numbers::pi * frequency * time[i];
-            c += (residual.value[i] - total / n) * std::cos(phase);
-            q += (residual.value[i] - total / n) * std::sin(phase);
+            const double phase = 2 * std::numbers::pi * frequency * known.x[i];
+            c += (known.y[i] - total / n) * std::cos(phase);
+            q += (known.y[i] - total / n) * std::sin(phase);
         }
-        if (n > 0) sum += 4 * (c * c + q * q) / n, rows += n;
+        sum += 4 * (c * c + q * q) / n;
     }
-    return rows > 0 ? std::sqrt(sum / rows) : 0.0;
+    return known.size() > 0 ? std::sqrt(sum / static_cast<double>(known.size())) : 0.0;
 }
 
 }  // namespace
@@ -159,20 +153,20 @@ double amplitude_at(const Series& residual, const std::vector<double>& time, dou
 Finding periodic_test(const Series& residual, const std::vector<double>& time, const TestOptions& options) {
     Finding finding{.test = "periodic", .covariate = "time"};
     std::vector<Segment> segments = segments_of(residual, time);
+    double rows = 0;
     for (const Segment& s : segments)
-        finding.units += static_cast<double>(s.value.size());
+        rows += static_cast<double>(s.value.size());
     if (segments.empty()) return not_asked(finding, "no stretch of 24 rows with rising time");
     const Spectrum spectrum(segments);
     std::size_t where = 0, ignored = 0;
-    finding.statistic = highest_line(spectrum.power(segments), where);
-    if (spectrum.frequency().size() < 4 || finding.statistic == 0)
-        return not_asked(finding, "too few frequencies");
+    const double highest = highest_line(spectrum.power(segments), where);
+    if (spectrum.frequency().size() < 4 || highest == 0) return not_asked(finding, "too few frequencies");
     const auto draw = [&](RandomStream& random) {
         for (Segment& s : segments)
             shuffle(std::span(s.value), random);
         return highest_line(spectrum.power(segments), ignored);
     };
-    finding.p = null_p(finding.statistic, finding.units, draw, options, "periodic");
+    finding.p = null_p(highest, rows, draw, options, "periodic");
     const double frequency = spectrum.frequency()[where];
     finding.effect = amplitude_at(residual, time, frequency);
     finding.relative = beside_scatter(finding.effect, residual);

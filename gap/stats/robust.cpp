@@ -39,10 +39,10 @@ double standard_deviation(const std::vector<double>& values) {
     const std::vector<double> kept = finite(values);
     if (kept.size() < 2) return NAN;
     const double centre = mean(kept);
-    double sum = 0;
+    double squares = 0;
     for (const double v : kept)
-        sum += (v - centre) * (v - centre);
-    return std::sqrt(sum / static_cast<double>(kept.size() - 1));
+        squares += (v - centre) * (v - centre);
+    return std::sqrt(squares / static_cast<double>(kept.size() - 1));
 }
 
 double quantile(std::vector<double> values, double q) {

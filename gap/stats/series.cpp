@@ -1,9 +1,7 @@
 #include "gap/stats/series.h"
 
+#include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
-
-#include <algorithm>
-#include <cmath>
 
 namespace puckloop::gap::stats {
 
@@ -65,12 +63,7 @@ std::vector<double> steps_of(const std::vector<double>& values) {
 }
 
 std::vector<Stretch> runs_of(const std::vector<int>& run) {
-    std::vector<Stretch> stretches;
-    for (std::size_t i = 0; i < run.size(); ++i) {
-        if (stretches.empty() || stretches.back().run != run[i]) stretches.push_back({i, i, run[i]});
-        stretches.back().last = i + 1;
-    }
-    return stretches;
+    return stretches_of(run);
 }
 
 std::vector<double> autocorrelation(const Series& series, std::size_t longest) {

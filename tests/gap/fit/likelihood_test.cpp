@@ -266,8 +266,7 @@ TEST_CASE("gradients are the value's own", "[gap][fit]") {
     State state = neutral_state(model);
     state.noise[0] = {0.1, kind == NoiseKind::Level ? -2.0 : 0.3, 1.5, kind == NoiseKind::Level ? 0.2 : 0.0};
     state.values = {0.4, 0.1, GENERATE(0.0, 0.05)};
-    std::vector<double> x(layout.size());
-    layout.pack(state, x.data());
+    const std::vector<double> x = layout.packed(state);
     Weights weights{std::vector<double>(60, 1.0)};
     weights[0][7] = 0.0;
     Objective objective(model, layout, state, weights);

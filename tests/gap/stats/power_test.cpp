@@ -1,5 +1,6 @@
 // What is there is found, with its size and shape in words.
 
+#include "gap/stats/exchange.h"
 #include "gap/stats/structure.h"
 #include "gap/stats/tests.h"
 #include "tests/gap/stats/made_series.h"
@@ -42,7 +43,7 @@ TEST_CASE("a distance in 9 steps of one run is enough for a strong trend, not fo
             distance.push_back(0.1 * d);
         }
     const Finding f = trend_test(y, distance, "distance", kOptions);
-    CHECK(f.units == 9);
+    CHECK(prepared(y, distance).blocks.size() == 9);
     CHECK(f.p <= 0.002);
     CHECK(f.p >= 1.0 / 1000);
     CHECK_THAT(f.shape, Contains("grows with distance, zero at distance = 0"));

@@ -1,6 +1,6 @@
 #include "tools/gap/selftest/grammar/drawn_case.h"
 
-#include "gap/stats/shuffle.h"
+#include "gap/stats/exchange.h"
 #include "tools/gap/selftest/case_list.h"
 #include "tools/gap/selftest/grammar/laboratory.h"
 #include "tools/gap/selftest/grammar/near_misses.h"
