@@ -44,12 +44,20 @@ struct Line {
     }
 };
 
-/// Plain, or the end of what the instrument shows at which the row is.
-RowRole role_of(const Observable& o, const Predicted& p, std::size_t i) {
+/// An end of what the instrument shows; `role` Plain: none.
+struct End {
+    RowRole role = RowRole::Plain;
+    double limit = 0.0;
+};
+
+/// The end at which the row is.
+End end_of(const Observable& o, const Predicted& p, std::size_t i) {
     const bool dead_zone = p.floor > 0.0 && std::isnan(o.instrument.floor);
-    if (o.y[i] <= (dead_zone ? 0.0 : o.instrument.floor)) return RowRole::Low;
-    if (o.y[i] >= o.instrument.ceiling) return RowRole::High;
-    return p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile ? RowRole::Piled : RowRole::Plain;
+    if (o.y[i] <= (dead_zone ? 0.0 : o.instrument.floor))
+        return {RowRole::Low, p.floor > 0.0 ? p.floor : o.instrument.floor};
+    if (o.y[i] >= o.instrument.ceiling) return {RowRole::High, o.instrument.ceiling};
+    if (p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile) return {RowRole::Piled, p.ceiling};
+    return {};
 }
 
 /// Height of the normal density over the tail beyond z.
@@ -111,12 +119,8 @@ Known beside_lapse(const Predicted& p, std::size_t i, double off, double sd, con
 
 /// Is the row at an end of what the instrument shows? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
-    const RowRole role = role_of(o, p, i);
+    const auto [role, limit] = end_of(o, p, i);
     if (role == RowRole::Plain) return false;
-    const double limit = role == RowRole::Piled  ? p.ceiling
-                         : role == RowRole::High ? o.instrument.ceiling
-                         : p.floor > 0.0         ? p.floor
-                                                 : o.instrument.floor;
     out.role[i] = role;
     out.z[i] = (limit - p.mean[i]) / sd;
     return true;
@@ -136,21 +140,15 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
     Lever lever{};
     PushedWalk pushed;
     const bool levered = !p.lever.empty();
-    unsigned behind = 0;  // rows of the chain that do not yet know whether they were pushed
-    const auto look_back = [&](std::size_t row, unsigned rows) {
-        for (; behind > rows; --behind)
-            out.pushed[row - (behind - 1)] = pushed.pushed(behind - 1);
-    };
+    unsigned followed = 0;  // rows of the chain after its first, before this one
     bool carried = false;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double sd = size.at(i);
         if (o.starts[i] != 0) carried = false;
-        const bool cut = clipped(o, p, i, sd, out);
-        if (!carried || cut) {
-            if (behind > 0) look_back(i - 1, 0);
+        if (clipped(o, p, i, sd, out)) {
             carried = false;
+            continue;
         }
-        if (cut) continue;
         const double error = (o.y[i] - p.mean[i]) / sd;
         if (!carried) {
             const Beginning first = beginning(o, p, i);
@@ -164,6 +162,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             if (plain) out.variance[i] = sd * sd;
             if (pushes) out.mixed[i] = (nu + 1) / 2 * std::log1p(out.z[i] * out.z[i] / nu) + std::log(sd);
             carried = true;
+            followed = 0;
             continue;
         }
         double innovation = 0.0;
@@ -184,10 +183,11 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         out.z[i] = row.innovation;
         out.mixed[i] = row.cost + std::log(sd);
         out.off[i] = row.off * sd;
-        ++behind;
-        look_back(i, kLookBack);
+        // Whether a row was pushed shows in the rows after it: the last look stays.
+        for (unsigned back = 0; back <= std::min(followed, kLookBack); ++back)
+            out.pushed[i - back] = pushed.pushed(back);
+        ++followed;
     }
-    if (behind > 0) look_back(o.y.size() - 1, 0);
 }
 
 void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
@@ -249,7 +249,7 @@ Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
     std::array<double, kFirstRows> errors;
     std::size_t n = 0;
     for (std::size_t k = i; n < kFirstRows && k < o.y.size() && (k == i || o.starts[k] == 0) &&
-                            role_of(o, p, k) == RowRole::Plain;
+                            end_of(o, p, k).role == RowRole::Plain;
          ++k)
         errors[n++] = o.y[k] - p.mean[k];
     const double first = errors[0];

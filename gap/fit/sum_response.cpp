@@ -22,13 +22,10 @@ SumResponse::SumResponse(const Observable& observable, const Predicted& predicte
     bool begun = false;
     for (std::size_t i = 0; i < n; ++i) {
         if (observable.starts[i] != 0) begun = false;
-        if (innovations.role[i] != RowRole::Plain && innovations.role[i] != RowRole::First) {
-            begun = false;
-            continue;
-        }
-        role_[i] = begun ? Role::Follows : Role::Begins;
-        begun = true;
-        if (role_[i] == Role::Begins) continue;
+        const bool seen = innovations.role[i] == RowRole::Plain || innovations.role[i] == RowRole::First;
+        role_[i] = !seen ? Role::Silent : begun ? Role::Follows : Role::Begins;
+        begun = seen;
+        if (role_[i] != Role::Follows) continue;
         z_[i] = innovations.z[i];
         sd_[i] = std::sqrt(innovations.variance[i]);
     }

@@ -57,7 +57,6 @@ std::vector<double> errors_of(const Observable& o, const Predicted& p, const Noi
 double spread_of(const std::vector<Chain>& chains, std::span<const double> pull, double curvature) {
     std::vector<double> squares;
     for (const Chain& chain : chains) {
-        if (chain.size() < thresholds::kJumpChain) continue;
         double before = 0.0;
         const std::size_t rows = chain.size() / thresholds::kJumpBatches;
         for (std::size_t b = 0; rows > 0 && b < thresholds::kJumpBatches; ++b) {
@@ -149,14 +148,14 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         const Observable& o = model.observables()[k];
         if (o.fixed_sd > 0 || o.noise == NoiseKind::Event) continue;
         if (is_rounding(o, state.noise[k])) continue;
-        const auto chains = stats::stretches_of(o.run, [&](std::size_t i) { return o.starts[i] != 0; });
-        const auto longest = std::ranges::max_element(
-            chains, [](const Chain& a, const Chain& b) { return a.size() < b.size(); });
-        if (longest == chains.end() || longest->size() < thresholds::kJumpChain) continue;
-        const bool sum = o.noise == NoiseKind::Level;
+        auto chains = stats::stretches_of(o.run, [&](std::size_t i) { return o.starts[i] != 0; });
+        std::erase_if(chains, [](const Chain& one) { return one.size() < thresholds::kJumpChain; });
+        if (chains.empty()) continue;
+        const Chain longest = *std::ranges::max_element(chains, {}, &Chain::size);
+        const bool sum = adds_up(o);
         const Scores scores(o, prediction[k], state.noise[k]);
         const auto trace =
-            sum ? trace_of(o, prediction[k], state.noise[k], scores, *longest) : std::vector<double>(1, 1.0);
+            sum ? trace_of(o, prediction[k], state.noise[k], scores, longest) : std::vector<double>(1, 1.0);
         const auto pull = sum ? scores.pull() : errors_of(o, prediction[k], state.noise[k]);
         const double curvature = sum ? scores.curvature() : 1.0;
         const double spread = spread_of(chains, pull, curvature);
@@ -165,9 +164,7 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         std::vector<double> highest;  // of each chain, over 2 ln of its rows
         ChangePoint best;
         best.observable = o.name;
-        best.unit = o.unit;
         for (const Chain& chain : chains) {
-            if (chain.size() < thresholds::kJumpChain) continue;
             // The largest of n squares of one deviation is about 2 ln n.
             const double usual = 2 * std::log(static_cast<double>(chain.size()));
             highest.push_back(-usual);

@@ -25,13 +25,12 @@ constexpr double kLeastSpread = 0.25;  // of the scores, in units of what the no
 constexpr int kGrid = 60;              // values of tau
 constexpr double kSameShape = 0.999;   // correlation of two modes that are one
 
-/// What one run, or one batch of it, says of a number: score and information.
+/// A number as one run, or one batch of it, has it: score and information.
 struct Score {
     double g = 0.0, h = 0.0;
 };
 
-/// What one run says of a number: its estimate, with a variance where runs differ by nothing but what the
-/// simulator draws.
+/// A number as one run has it, with a variance where runs differ by nothing but what the simulator draws.
 struct Estimate {
     double value = 0.0, variance = 0.0;
 };
@@ -64,7 +63,7 @@ std::vector<Mode> modes_of(const Observable& o, const Predicted& p) {
     return modes;
 }
 
-/// What each run says, as far as scores scatter inside runs.
+/// A number as each run has it, by how far scores scatter inside runs.
 struct ByRun {
     std::vector<Estimate> run;
     double freedom = 0.0;  ///< of how far they scatter
@@ -182,8 +181,6 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     const std::size_t n = runs.size();
     RunDifference result;
     result.observable = o.name;
-    result.unit = mode.unit;
-    result.what = mode.what;
     std::vector<double> gains;
     for (std::size_t r = 0; r < n; ++r) {
         const double tau = best_tau(runs, r), own = runs[r].variance;
@@ -194,7 +191,6 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     const Gain gain = gain_of(gains);
     result.gain = gain.sum;
     result.sd = gain.sd;
-    result.size = best_tau(runs, n);
     const double middle = common_of(runs, 0.0, n).mean;
     double between = 0.0, low = INFINITY, high = -INFINITY;
     for (const Estimate& run : runs) {
@@ -214,7 +210,7 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
         o.noise == NoiseKind::Event
             ? fmt::format("differs from run to run: {}", shares_of(o))
             : fmt::format("differs from run to run: {} {} to {} (sd {})", mode.what, change(low, mode.unit),
-                          change(high, mode.unit), quantity(result.size, mode.unit));
+                          change(high, mode.unit), quantity(best_tau(runs, n), mode.unit));
     return result;
 }
 

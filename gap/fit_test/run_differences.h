@@ -19,13 +19,11 @@ namespace puckloop::gap {
 
 /// One way in which runs may differ, of one observable.
 struct RunDifference {
-    std::string observable, unit;
-    std::string what;      ///< "offset", "share of the reading", "drift"
-    double size = 0.0;     ///< tau: sd between runs, in the unit of `what`
+    std::string observable;
     double gain = 0.0;     ///< log score of runs left out, over one number for all of them, nats
     double sd = 0.0;       ///< of the gain, between runs
     double p_value = 1.0;  ///< analysis of variance: runs against blocks inside runs
-    std::string shape;     ///< in words
+    std::string shape;     ///< in words: an offset, a share of the reading, a drift, with its size
 };
 
 /// The ways in which runs differ, the one that gains most first; none with fewer than three runs.
@@ -33,7 +31,7 @@ std::vector<RunDifference> run_differences(const Model& model, const State& stat
 
 /// One jump that stays, inside a run.
 struct ChangePoint {
-    std::string observable, unit;
+    std::string observable;
     std::uint32_t run = 0, row = 0;
     double jump = 0.0;     ///< observable's unit
     double p_value = 1.0;  ///< that the highest of so many chains and observables is so high

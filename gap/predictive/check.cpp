@@ -80,7 +80,8 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
         });
         std::vector<PredictiveCheck> checks;
         for (std::size_t o = 0; o < observables.size(); ++o) {
-            checks.push_back({observables[o].name, observables[o].unit, extended, static_cast<int>(count), {}});
+            checks.push_back(
+                {observables[o].name, observables[o].unit, extended, static_cast<int>(count), {}});
             for (const Discrepancy& one : discrepancies[o])
                 checks.back().curves.push_back(one.judged());
         }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 namespace puckloop::gap {
 
@@ -44,30 +45,20 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 }
 
 std::string covariate_label(const std::string& name) {
-    static const std::map<std::string, std::string> kUnits{{"distance", "m"},
-                                                           {"angle", "rad"},
-                                                           {"off axis", "rad"},
-                                                           {"true bearing", "rad"},
-                                                           {"time", "s"},
-                                                           {"velocity", "m/s"},
-                                                           {"speed", "m/s"},
-                                                           {"wheel speed", "steps/s"},
-                                                           {"turn rate", "steps/s"},
-                                                           {"acceleration", "steps/s²"},
-                                                           {"distance so far", "steps"},
-                                                           {"temperature", "°C"},
-                                                           {"battery", "V"},
-                                                           {"cmd left", "steps/s"},
-                                                           {"cmd right", "steps/s"},
-                                                           {"theta", "rad"},
-                                                           {"motor speed", "steps/s"},
-                                                           {"pitch", "rad"},
-                                                           {"roll", "rad"},
-                                                           {"grey rate", "1/m"},
-                                                           {"frame time", "s"},
-                                                           {"poll period", "s"}};
-    const auto unit = kUnits.find(name);
-    return with_unit(name, unit == kUnits.end() ? "" : unit->second);
+    static const std::map<std::string, std::set<std::string>> kOfUnit{
+        {"m", {"distance"}},
+        {"rad", {"angle", "off axis", "true bearing", "theta", "pitch", "roll"}},
+        {"s", {"time", "frame time", "poll period"}},
+        {"m/s", {"velocity", "speed"}},
+        {"steps", {"distance so far"}},
+        {"steps/s", {"wheel speed", "turn rate", "cmd left", "cmd right", "motor speed"}},
+        {"steps/s²", {"acceleration"}},
+        {"°C", {"temperature"}},
+        {"V", {"battery"}},
+        {"1/m", {"grey rate"}}};
+    for (const auto& [unit, names] : kOfUnit)
+        if (names.contains(name)) return with_unit(name, unit);
+    return name;
 }
 
 }  // namespace puckloop::gap

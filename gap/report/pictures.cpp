@@ -76,8 +76,8 @@ Picture residuals(const Series& series, const Covariate& c, const char* title, s
     std::vector<std::string> names;
     const std::vector<double> x = groups ? as_places(c, names) : c.value;
     for (const Shown& shown : kShown) {
-        const stats::Band band = stats::bootstrap_band(by_run(series, left_over(series, shown.stage)), x,
-                                                       kBins, kCoverage, seed);
+        const stats::Band band =
+            stats::bootstrap_band(by_run(series, left_over(series, shown.stage)), x, kBins, kCoverage, seed);
         for (std::size_t i = 0; groups && i < band.x.size(); ++i)
             chart.interval(band.x[i] + (shown.dashed ? -0.1 : 0.1), band.y[i], band.low[i], band.high[i],
                            shown.colour);

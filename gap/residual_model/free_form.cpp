@@ -243,19 +243,18 @@ bool in_bursts(const stats::ErrorRows& rows) {
     double seen = 0.0, expected = 0.0, n = 0.0, k = 0.0;
     bool last = false;
     for (std::size_t i = 0; i < rows.error.size(); ++i) {
-        if (rows.follows[i] == 0) {
-            expected += n > 0 ? k * (k - 1) / n : 0.0;
-            n = k = 0.0;
-            last = false;
+        if (std::isfinite(rows.error[i])) {
+            const bool wild = rows.error[i] != 0.0;
+            seen += wild && last ? 1 : 0;
+            n += 1;
+            k += wild ? 1 : 0;
+            last = wild;
         }
-        if (!std::isfinite(rows.error[i])) continue;
-        const bool wild = rows.error[i] != 0.0;
-        seen += wild && last ? 1 : 0;
-        n += 1;
-        k += wild ? 1 : 0;
-        last = wild;
+        if (i + 1 < rows.error.size() && rows.follows[i + 1] != 0) continue;
+        expected += n > 0 ? k * (k - 1) / n : 0.0;
+        n = k = 0.0;
+        last = false;
     }
-    expected += n > 0 ? k * (k - 1) / n : 0.0;
     return seen > kManyTimes * expected && seen - expected > kManyDeviations * std::sqrt(expected + 1);
 }
 
@@ -286,8 +285,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     const double sd = std::sqrt(rows / static_cast<double>(known.size()));
     for (double& error : errors.rows.error)
         error /= sd;
-    for (double& scale : errors.scale)
-        scale = sd;
+    errors.scale.assign(errors.scale.size(), sd);
     errors.quantum = 0.0;
     errors.observable = form.observable;
     errors.unit = "of the readings";
