@@ -34,9 +34,9 @@ std::string never_happened(const Study& study, const Candidate& candidate) {
 Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
     Readiness ready;
     Problems problems;
-    attempt(&problems, [&] { ready.experiment = survey_experiment(folder, problems); });
+    problems.attempt([&] { ready.experiment = survey_experiment(folder, problems); });
     if (problems.empty())
-        attempt(&problems, [&] {  // [nominal] is the model's to check
+        problems.attempt([&] {  // [nominal] is the model's to check
             const Study study(*ready.experiment, 1, threads);
             for (const Candidate& candidate : study.candidates()) {
                 const std::string absent = candidate.remark.empty() ? never_happened(study, candidate) : "";

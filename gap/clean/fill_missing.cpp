@@ -1,8 +1,7 @@
 #include "gap/clean/clean.h"
 
-#include "gap/data/cells.h"
 #include "gap/data/columns.h"
-#include "gap/data/refuse.h"
+#include "gap/stats/robust.h"
 
 #include <fmt/format.h>
 
@@ -22,12 +21,12 @@ void carry_on(std::vector<double>& values, bool slow) {
     const std::vector<double> given = values;
     std::size_t last = values.size();
     for (std::size_t i = 0; i < values.size(); ++i) {
-        if (!missing(given[i])) {
+        if (!std::isnan(given[i])) {
             last = i;
             continue;
         }
         std::size_t next = i;
-        while (next < given.size() && missing(given[next]))
+        while (next < given.size() && std::isnan(given[next]))
             ++next;
         if (last == values.size())
             values[i] = given[next];
@@ -45,10 +44,10 @@ void blank(const Experiment& experiment, Run& run, const char* column, const std
         const bool event = info.high - info.low <= 1;
         if (info.role != Role::Observable || event || !run.has(info.name)) continue;
         auto& values = run.columns.at(info.name);
-        const std::size_t there = values.size() - count_missing(values);
+        const std::size_t there = stats::finite(values).size();
         for (const std::size_t i : rows)
             values[i] = std::nan("");
-        const std::size_t lost = there - (values.size() - count_missing(values));
+        const std::size_t lost = there - stats::finite(values).size();
         if (static_cast<double>(lost) > kMostLost * static_cast<double>(there))
             refuse(experiment, run,
                    fmt::format("{} is missing in {} of {} rows that have {}", column, lost, there, info.name),
@@ -64,8 +63,8 @@ void fill(Experiment& experiment, Run& run, const ColumnInfo& info, ByRemedy& fi
     auto& values = run.columns.at(info.name);
     std::vector<std::size_t> gone;
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (missing(values[i])) gone.push_back(i);
-    std::vector<double> given = known(values);
+        if (std::isnan(values[i])) gone.push_back(i);
+    std::vector<double> given = stats::finite(values);
     if (gone.empty() || given.empty()) return;
     std::ranges::sort(given);
     std::string done;
@@ -78,7 +77,8 @@ void fill(Experiment& experiment, Run& run, const ColumnInfo& info, ByRemedy& fi
     } else {
         blank(experiment, run, info.name, gone);
         if (experiment.kind == Kind::Rab || experiment.kind == Kind::Timing)
-            std::ranges::replace_if(values, missing, given[given.size() / 2]);
+            std::ranges::replace_if(
+                values, [](double value) { return std::isnan(value); }, given[given.size() / 2]);
         done = "which are left out";
     }
     files[done].push_back({run.file, gone.size(), run.rows});

@@ -175,7 +175,7 @@ bool is_binary(std::string_view text) {
     return std::any_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < '\t'; });
 }
 
-CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
+CsvTable read_csv(const std::filesystem::path& file, Problems& problems) {
     std::ifstream stream = opened(file, kWanted);
     CsvTable table;
     char separator = ',';
@@ -199,7 +199,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
             continue;
         }
         auto cells = csv_cells(line, separator);
-        const bool whole = attempt(problems, [&] {
+        const bool whole = problems.attempt([&] {
             if (cells.size() != table.names.size())
                 throw InputError(file.string(), place,
                                  fmt::format("has {} cells{}", cells.size(), open_quote(line)),
@@ -212,7 +212,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
             commas[i].take(cells[i]);
-            const bool sound = attempt(problems, [&] {
+            const bool sound = problems.attempt([&] {
                 if (!parse(cells[i], decimal, value))
                     throw InputError(file.string(), place,
                                      fmt::format("\"{}\" in column \"{}\" is not a finite number",

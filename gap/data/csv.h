@@ -28,8 +28,8 @@ bool is_binary(std::string_view text);
 /// Comma, semicolon or tab between cells (as the header has it); empty lines and lines that begin with '#'
 /// are passed over. Between semicolons or tabs, and in quotes, a comma is a decimal comma, if no number has a
 /// point; in quotes between commas one of them at least must not look like thousands.
-/// Throws InputError with the row (from 1 after the header) for text, infinities, and rows of another length.
-/// Where `problems` are gathered, the cells of bad rows and bad cells are missing, and reading goes on.
-CsvTable read_csv(const std::filesystem::path& file, Problems* problems = nullptr);
+/// InputErrors name the row (from 1 after the header): text, infinities, and rows of another length.
+/// Bad rows and bad cells go to `problems`; their cells are missing, and reading goes on.
+CsvTable read_csv(const std::filesystem::path& file, Problems& problems);
 
 }  // namespace puckloop::gap

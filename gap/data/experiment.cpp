@@ -28,17 +28,9 @@ using scenarios::Reader;
 constexpr const char* kNumber = "a finite number";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Where a canonical column comes from: [columns] x_m = { from = "x", unit = "mm" }.
-struct Origin {
-    std::string from;
-    ToSi to_si{};
-    int line = 0;
-};
-
 /// What the whole file says, before the runs.
 struct Frame {
     std::string file;
-    std::map<std::string, Origin, std::less<>> origins;
     std::map<std::string, std::string> conditions;
     std::map<std::string, std::map<std::string, double>> codes;  // of session and unit names, as they appear
     // In how many files:
@@ -102,8 +94,9 @@ const ColumnInfo& known_column(Reader& reader, Kind kind, const std::string& nam
         "a column of docs/gap.md");
 }
 
-void read_columns(const TomlValue& table, Experiment& experiment, Frame& frame) {
-    Reader reader(frame.file, "columns", table);
+/// [columns] x_m = { from = "x", unit = "mm" }, or x_m = "mm".
+void read_columns(const TomlValue& table, Experiment& experiment, const std::string& file) {
+    Reader reader(file, "columns", table);
     for (const auto& [name, value] : reader.everything()) {
         const ColumnInfo& info = known_column(reader, experiment.kind, name);
         std::string from = name, unit;
@@ -111,19 +104,17 @@ void read_columns(const TomlValue& table, Experiment& experiment, Frame& frame) 
             unit = std::get<std::string>(value.data);
         } else {
             if (!value.is_table())
-                fail_at(frame.file, value.line, fmt::format("column {} is neither unit nor table", name),
+                fail_at(file, value.line, fmt::format("column {} is neither unit nor table", name),
                         "\"mm\", say, or { from = \"name in the file\", unit = \"mm\" }");
-            Reader entry(frame.file, "column " + name, value);
+            Reader entry(file, "column " + name, value);
             from = entry.text("from", name);
             unit = entry.text("unit", info.unit);
             entry.finish();
         }
-        const auto to_si = unit_to_si(unit, info.unit);
-        if (!to_si)
-            fail_at(frame.file, value.line, fmt::format("column {} cannot be in \"{}\"", name, unit),
+        if (!unit_to_si(unit, info.unit))
+            fail_at(file, value.line, fmt::format("column {} cannot be in \"{}\"", name, unit),
                     units_of(info.unit));
-        frame.origins[name] = {from, *to_si, value.line};
-        experiment.stated[name] = {from, unit};
+        experiment.stated[name] = {from, unit, value.line};
     }
 }
 
@@ -198,7 +189,7 @@ void require_columns(Kind kind, const Run& run, const std::vector<std::string>& 
 }
 
 Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, Frame& frame,
-             Problems* problems) {
+             Problems& problems) {
     Reader reader(frame.file, fmt::format("run {}", index + 1), table);
     Run run;
     run.file = reader.text("file");
@@ -214,10 +205,12 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
         ++frame.like_thousands[name];
     std::map<std::string, std::string> used;  // CSV name: canonical name
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
-        const auto stated = frame.origins.find(info.name);
-        const auto& [from, to_si, line] = stated == frame.origins.end() ? Origin{info.name} : stated->second;
+        const auto stated = experiment.stated.find(info.name);
+        const auto& [from, unit, line] =
+            stated == experiment.stated.end() ? Stated{info.name, info.unit} : stated->second;
         const auto place = std::ranges::find(csv.names, from);
         if (place == csv.names.end()) continue;
+        const ToSi to_si = unit_to_si(unit, info.unit).value();
         auto& values = run.columns[info.name] =
             csv.columns[static_cast<std::size_t>(place - csv.names.begin())];
         for (double& value : values)
@@ -228,10 +221,10 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
                                          info.name, from, run.file),
                              "a column of its own for each");
     }
-    for (const auto& [name, origin] : frame.origins)
-        if (!run.has(name) && std::ranges::find(csv.names, origin.from) == csv.names.end() &&
+    for (const auto& [name, stated] : experiment.stated)
+        if (!run.has(name) && std::ranges::find(csv.names, stated.from) == csv.names.end() &&
             find_column(experiment.kind, name)->required)
-            throw InputError(path.string(), "header", fmt::format("has no column \"{}\"", origin.from),
+            throw InputError(path.string(), "header", fmt::format("has no column \"{}\"", stated.from),
                              fmt::format("it, as {} says", frame.file));
     read_constants(reader, experiment.kind, table, frame, run);
     require_columns(experiment.kind, run, csv.names, path, frame);
@@ -307,7 +300,7 @@ TomlValue read_description(const std::string& file) {
     return read_toml(file);
 }
 
-Experiment read_folder(const std::filesystem::path& folder, Problems* problems) {
+Experiment read_folder(const std::filesystem::path& folder, Problems& problems) {
     std::error_code ignored;
     const auto type = std::filesystem::status(folder, ignored).type();
     if (type == std::filesystem::file_type::not_found)
@@ -337,7 +330,7 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
             "this is a brief recording, to see what is recorded: too few and too short runs for a "
             "verdict, whichever it is");
     read_assumed(top, experiment);
-    if (const TomlValue* table = top.table("columns")) read_columns(*table, experiment, frame);
+    if (const TomlValue* table = top.table("columns")) read_columns(*table, experiment, frame.file);
     if (const TomlValue* table = top.table("nominal"))
         flatten(top, "", std::get<TomlTable>(table->data), experiment.nominal);
     if (const TomlValue* table = top.table("instrument")) read_instruments(*table, experiment, frame.file);
@@ -346,14 +339,14 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
     if (runs.empty()) top.fail("run", "no run", "at least one [[run]] with its file");
     top.finish();
     for (std::size_t i = 0; i < runs.size(); ++i)
-        attempt(problems,
-                [&] { experiment.runs.push_back(read_run(*runs[i], i, experiment, frame, problems)); });
+        problems.attempt(
+            [&] { experiment.runs.push_back(read_run(*runs[i], i, experiment, frame, problems)); });
     const bool whole = experiment.runs.size() == runs.size();
-    for (const auto& [name, origin] : frame.origins)
-        attempt(problems, [&] {
+    for (const auto& [name, stated] : experiment.stated)
+        problems.attempt([&] {
             if (whole && !experiment.has(name))
-                fail_at(frame.file, origin.line,
-                        fmt::format("{} is to be the column \"{}\", which no file has", name, origin.from),
+                fail_at(frame.file, stated.line,
+                        fmt::format("{} is to be the column \"{}\", which no file has", name, stated.from),
                         "a column of the CSV files");
         });
     for (const auto& [text, files] : frame.unused)
@@ -371,16 +364,17 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& folder) {
-    Experiment experiment = read_folder(folder, nullptr);
-    check(experiment);
+    Problems problems;
+    Experiment experiment = survey_experiment(folder, problems);
+    if (!problems.empty()) throw InputError(problems.first());
     align_times(experiment);
     find_pauses(experiment);
     return experiment;
 }
 
 Experiment survey_experiment(const std::filesystem::path& folder, Problems& problems) {
-    Experiment experiment = read_folder(folder, &problems);
-    if (!experiment.runs.empty()) check(experiment, &problems);
+    Experiment experiment = read_folder(folder, problems);
+    if (!experiment.runs.empty()) check(experiment, problems);
     return experiment;
 }
 

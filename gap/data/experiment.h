@@ -2,6 +2,7 @@
 // A measured experiment as the analysis sees it: kind, nominal numbers, runs with conditions and a table of
 // canonical columns in SI units. The format on disk is docs/gap.md; read_experiment() is its only reader.
 
+#include "base/error.h"
 #include "gap/stats/series.h"
 
 #include <fmt/format.h>
@@ -49,9 +50,10 @@ struct Instrument {
     double quantum = 0.0;  ///< step between two values
 };
 
-/// Of a column that [columns] names: where the files have it, and in which unit.
+/// Of a column that [columns] names: where the files have it, in which unit, and its line there.
 struct Stated {
     std::string from, unit;
+    int line = 0;
 };
 
 struct Experiment {
@@ -79,9 +81,24 @@ struct Experiment {
     }
 };
 
+/// Data that cannot be used, in one line with place, problem and remedy: throws InputError, which names the
+/// run's file and, where `row` (from 0) is given, the row.
+[[noreturn]] inline void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
+                                const std::string& expected, long row = -1) {
+    throw InputError((experiment.folder / run.file).string(),
+                     row < 0 ? std::string() : fmt::format("row {}", row + 1), problem, expected);
+}
+
+/// Of the experiment as a whole: its experiment.toml.
+[[noreturn]] inline void refuse(const Experiment& experiment, const std::string& problem,
+                                const std::string& expected) {
+    throw InputError((experiment.folder / "experiment.toml").string(), "", problem, expected);
+}
+
 /// Reads `folder`/experiment.toml and the CSV files it names, converts units, and looks for what cannot be
 /// used: wrong units, swapped columns, a clock that jumps, constant columns, missing truth, NaN, two robots
-/// mixed. What can be used with care becomes a caution. Throws InputError with file and line.
+/// mixed. What can be used with care becomes a caution. Throws InputError with file and line for the first
+/// problem.
 Experiment read_experiment(const std::filesystem::path& folder);
 
 /// The same, but every problem found goes to `problems` and reading goes on behind it, as far as it makes

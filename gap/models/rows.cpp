@@ -1,8 +1,8 @@
 #include "gap/models/rows.h"
 
 #include "gap/clean/quantum.h"
-#include "gap/data/cells.h"
 #include "gap/data/columns.h"
+#include "gap/stats/robust.h"
 #include "gap/stats/series.h"
 
 #include <algorithm>
@@ -134,7 +134,7 @@ std::vector<double> taken(const std::vector<double>& column, const std::vector<s
 }
 
 std::vector<double> distinct(const std::vector<double>& column) {
-    std::vector<double> values = known(column);
+    std::vector<double> values = stats::finite(column);
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;

@@ -1,9 +1,9 @@
 #include "gap/validate/checks.h"
 
 #include "gap/clean/clean.h"
-#include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/data/problems.h"
+#include "gap/stats/robust.h"
 #include "gap/validate/units.h"
 
 #include <fmt/format.h>
@@ -24,6 +24,11 @@ constexpr std::size_t kFewRows = 30;
 constexpr std::size_t kRunRows = 10;  // a run this long whose measurement never changes is odd
 constexpr double kLongestGap = 1e7;   // s
 constexpr double kManyClipped = 0.5, kMostClipped = 0.95;
+
+std::size_t count_missing(const std::vector<double>& values) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(values, [](double value) { return std::isnan(value); }));
+}
 
 double furthest(const std::vector<double>& values) {
     double most = 0.0;
@@ -65,7 +70,7 @@ bool is_index(const ColumnInfo& info) {
 void check_index(const Experiment& experiment, const Run& run, const ColumnInfo& info) {
     const auto& values = run.column(info.name);
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (!missing(values[i]) && values[i] != std::round(values[i]))
+        if (!std::isnan(values[i]) && values[i] != std::round(values[i]))
             refuse(experiment, run, fmt::format("{} = {:.6g} is not whole", info.name, values[i]),
                    "whole numbers; or the columns are swapped", static_cast<long>(i));
 }
@@ -114,7 +119,7 @@ void drop_empty(Experiment& experiment) {
 void check_clipped(Experiment& experiment, const ColumnInfo& info) {
     const auto instrument = experiment.instruments.find(info.name);
     if (instrument == experiment.instruments.end()) return;
-    const std::vector<double> values = known(pooled(experiment, info.name));
+    const std::vector<double> values = stats::finite(pooled(experiment, info.name));
     const auto clipped =
         std::ranges::count_if(values, [&](double value) { return instrument->second.at_end(value); });
     const double share =
@@ -133,11 +138,11 @@ void check_clock(Experiment& experiment, const Run& run, const char* name) {
     double last = std::nan("");
     std::vector<double> steps;
     for (std::size_t i = 0; i < times.size(); ++i) {
-        if (missing(times[i])) continue;
+        if (std::isnan(times[i])) continue;
         if (times[i] < last)
             refuse(experiment, run, fmt::format("{} goes back from {:.6g} to {:.6g} s", name, last, times[i]),
                    "a clock that runs forward: one run a file", static_cast<long>(i));
-        if (!missing(last)) steps.push_back(times[i] - last);
+        if (!std::isnan(last)) steps.push_back(times[i] - last);
         last = times[i];
     }
     if (steps.empty()) return;
@@ -194,7 +199,7 @@ void check_runs(Experiment& experiment) {
     else if (experiment.runs.size() < 4)
         experiment.caution("there are only {} runs: intervals over runs are wide and uncertain",
                            experiment.runs.size());
-    const std::vector<double> named = known(pooled(experiment, "unit"));
+    const std::vector<double> named = stats::finite(pooled(experiment, "unit"));
     const std::set<double> units(named.begin(), named.end());
     if (units.size() > 1)
         experiment.caution("{} robots are mixed: what is found is common to them; a "
@@ -220,8 +225,8 @@ void check_files(const Experiment& experiment) {
 
 }  // namespace
 
-void check(Experiment& experiment, Problems* problems) {
-    const auto step = [&](const auto& what) { return attempt(problems, what); };
+void check(Experiment& experiment, Problems& problems) {
+    const auto step = [&](const auto& what) { return problems.attempt(what); };
     step([&] { check_files(experiment); });
     step([&] { check_nominal(experiment); });
     drop_empty(experiment);
@@ -240,7 +245,7 @@ void check(Experiment& experiment, Problems* problems) {
     for (const Run& run : experiment.runs)
         for (const char* clock : {"t_s", "t_host_s", "t_robot_s"})
             if (run.has(clock)) step([&] { check_clock(experiment, run, clock); });
-    if (problems != nullptr && !problems->empty()) return;
+    if (!problems.empty()) return;
     step([&] {
         drop_repeats(experiment);  // before cells are filled, which then differ in rows that were alike
         fill_missing(experiment);

@@ -1,6 +1,5 @@
 #include "gap/validate/checks.h"
 
-#include "gap/data/cells.h"
 #include "gap/data/columns.h"
 #include "gap/stats/robust.h"
 
@@ -150,7 +149,7 @@ void check_frames(Experiment& experiment, Run& run) {
                            seq[first], seq[first - 1], back, seq.size()),
                "one robot a file, each frame once", static_cast<long>(first));
     report_absent(experiment, run, seq);
-    const auto host = known(run.column("t_host_s"));
+    const auto host = stats::finite(run.column("t_host_s"));
     const auto& period = run.column("nominal_period");
     if (!seq.empty() || period.empty() || std::isnan(period.front())) return;
     if (host.size() < kEnough) return;

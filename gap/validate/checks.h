@@ -3,7 +3,6 @@
 // InputError, what can be used with care becomes a caution.
 
 #include "gap/data/experiment.h"
-#include "gap/data/refuse.h"
 
 #include <array>
 #include <cstddef>
@@ -14,8 +13,9 @@
 namespace puckloop::gap {
 
 /// All checks. May drop rows that no analysis can use (all truth missing), with a caution.
-/// Where `problems` are gathered, every check is made; those that need sound columns only where all are.
-void check(Experiment& experiment, Problems* problems = nullptr);
+/// Every check is made, and what is wrong goes to `problems`; those that need sound columns only where all
+/// are.
+void check(Experiment& experiment, Problems& problems);
 
 /// A column of all runs, one behind the other; NaN in the rows of runs without it.
 std::vector<double> pooled(const Experiment& experiment, std::string_view column);
