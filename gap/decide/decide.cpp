@@ -1,9 +1,6 @@
 #include "gap/decide/decide.h"
 
 #include "gap/decide/thresholds.h"
-#include "gap/evidence/criterion.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -23,37 +20,26 @@ double Grounds::unexplained() const {
     return share_of(left(), gain.sum);
 }
 
-std::vector<std::string> objections(const Grounds& g) {
-    std::vector<std::string> all;
-    if (g.causes == 0) return all;
-    const auto against = [&](bool speaks, std::string why) {
-        if (speaks) all.push_back(std::move(why));
-    };
+std::string doubt_of(const Grounds& g) {
+    if (g.causes == 0) return "";
     // 1. Evidence. The set as a whole must gain on runs that were not fitted; else no gain could be claimed
     //    beside its name.
-    against(!gains_enough(g.gain, g.candidates, g.causes),
-            "does not gain for sure on runs that were not fitted");
-    against(!g.error_falls, "lowers the error of so few runs by chance only, as far as they tell");
-    against(g.in_rounding, "moves readings by no more than their rounding or cutting off");
+    if (!gains_enough(g.gain, g.candidates, g.causes))
+        return "does not gain for sure on runs that were not fitted";
+    if (!g.error_falls) return "lowers the error of so few runs by chance only, as far as they tell";
+    if (g.in_rounding) return "moves readings by no more than their rounding or cutting off";
     // 2. Identification. What was assumed may itself be what is wrong.
-    against(!g.assumed.empty(),
-            fmt::format("{} was assumed, not measured, and an error of it may look the same", g.assumed));
+    if (!g.assumed.empty())
+        return g.assumed + " was assumed, not measured, and an error of it may look the same";
     // 3. Goodness of fit. What is left must be a small part of what was wrong.
     const double most = g.sums ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
-    against(g.unexplained() > most || share_of(g.left_of_readings, g.gain.sum) > thresholds::kShareLeft,
-            "leaves too much to be the cause");
-    against(g.stopped_at_end && g.structure && !g.only_wanders,
-            "stopped at the end of its plausible range and leaves something");
-    // 4. Role. A cause gains by what it is said to do: means by means, scatter by what is scatter.
-    against(!g.out_of_role.empty(), g.out_of_role);
+    if (g.unexplained() > most || share_of(g.left_of_readings, g.gain.sum) > thresholds::kShareLeft)
+        return "leaves too much to be the cause";
+    if (g.stopped_at_end && g.structure && !g.only_wanders)
+        return "stopped at the end of its plausible range and leaves something";
+    // 4. Role: a cause gains by what it is said to do, means by means, scatter by what is scatter.
     // 5. Confirmation, on runs that had no part in it.
-    against(!g.not_confirmed.empty(), g.not_confirmed);
-    return all;
-}
-
-std::string doubt_of(const Grounds& grounds) {
-    const auto all = objections(grounds);
-    return all.empty() ? "" : all.front();
+    return g.out_of_role.empty() ? g.not_confirmed : g.out_of_role;
 }
 
 Decision decision_of(const Grounds& g, const std::string& doubt) {

@@ -3,7 +3,7 @@
 // beside them.
 
 #include "gap/data/experiment.h"
-#include "gap/decide/grounds.h"
+#include "gap/decide/decide.h"
 #include "gap/predictive/predictive.h"
 
 #include <cmath>
@@ -13,7 +13,6 @@
 
 namespace puckloop::gap {
 
-enum class Decision { Named, CannotTell, NoEffect, Unexplained };
 std::string_view decision_name(Decision decision);  ///< "named", "cannot_tell", "no_effect", "unexplained"
 
 /// What a person calls an observable: "distance along the heading" for "along"; columns by their own names.

@@ -2,7 +2,6 @@
 // neighbours' where the data can, and scatter is not what differs from run to run.
 
 #include "base/random.h"
-#include "gap/decide/ablation.h"
 #include "gap/decide/decide.h"
 #include "gap/decide/roles.h"
 #include "gap/decide/thresholds.h"
@@ -79,15 +78,6 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
         CHECK_FALSE(doubt_of(g).empty());
         CHECK(decision_of(g, doubt_of(g)) != Decision::Named);
     }
-    CHECK(alone_against(sound()).empty());
-    Grounds doubted = sound();
-    doubted.left_by_run = 40;
-    CHECK(alone_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
-    CHECK(enough_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
-    doubted.not_confirmed = "leaves something";
-    CHECK(alone_against(doubted).empty());
-    CHECK(enough_against(doubted) == std::vector<std::string>{"share left: numbers of runs", "confirmation"});
-    CHECK(enough_against(sound()).empty());
     Grounds rounded = sound();
     rounded.in_rounding = true;
     CHECK(decision_of(rounded, doubt_of(rounded)) == Decision::NoEffect);

@@ -4,6 +4,7 @@
 #include "gap/effects/effect.h"
 #include "tests/scratch.h"
 #include "tools/gap/selftest/case_list.h"
+#include "tools/gap/selftest/grammar/ablation.h"
 #include "tools/gap/selftest/grammar/curves.h"
 #include "tools/gap/selftest/grammar/families.h"
 #include "tools/gap/selftest/grammar/laboratory.h"
@@ -263,6 +264,23 @@ TEST_CASE("results are read back as they were written, and nothing else is read"
         }
     }
     CHECK_THROWS_AS(outcomes_from_json("{}", "cases.json"), InputError);
+}
+
+TEST_CASE("rules that refuse causes are those that speak, each by itself or alone") {
+    gap::Grounds sound;
+    sound.causes = 1;
+    sound.candidates = 20;
+    sound.gain.sum = 100;
+    sound.gain.sd = 20;
+    CHECK(alone_against(sound).empty());
+    CHECK(enough_against(sound).empty());
+    gap::Grounds doubted = sound;
+    doubted.left_by_run = 40;
+    CHECK(alone_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
+    CHECK(enough_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
+    doubted.not_confirmed = "leaves something";
+    CHECK(alone_against(doubted).empty());
+    CHECK(enough_against(doubted) == std::vector<std::string>{"share left: numbers of runs", "confirmation"});
 }
 
 TEST_CASE("rules could go together as long as each refused case but known ones keeps one") {

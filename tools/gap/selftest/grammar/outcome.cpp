@@ -1,8 +1,8 @@
 #include "tools/gap/selftest/grammar/outcome.h"
 
-#include "gap/decide/ablation.h"
 #include "gap/effects/effect.h"
 #include "gap/stats/tails.h"
+#include "tools/gap/selftest/grammar/ablation.h"
 #include "tools/gap/selftest/grammar/families.h"
 #include "tools/gap/selftest/run_cases.h"
 

@@ -2,7 +2,7 @@
 #include "tools/gap/selftest/grammar/rates.h"
 
 #include "base/error.h"
-#include "gap/decide/ablation.h"
+#include "tools/gap/selftest/grammar/ablation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,13 +1,13 @@
 #pragma once
 // What each ground of the decision is worth: which of them alone stands between a cause and its name.
 
-#include "gap/decide/grounds.h"
+#include "gap/decide/decide.h"
 
 #include <span>
 #include <string>
 #include <vector>
 
-namespace puckloop::gap {
+namespace puckloop::gap::selftest::grammar {
 
 /// A ground that may be left out of the decision.
 struct Rule {
@@ -24,4 +24,4 @@ std::vector<std::string> alone_against(const Grounds& grounds);
 /// together as long as each refused cause keeps one of these.
 std::vector<std::string> enough_against(const Grounds& grounds);
 
-}  // namespace puckloop::gap
+}  // namespace puckloop::gap::selftest::grammar

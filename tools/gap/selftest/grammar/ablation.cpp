@@ -1,8 +1,6 @@
-#include "gap/decide/ablation.h"
+#include "tools/gap/selftest/grammar/ablation.h"
 
-#include "gap/decide/decide.h"
-
-namespace puckloop::gap {
+namespace puckloop::gap::selftest::grammar {
 
 std::span<const Rule> rules() {
     static constexpr Rule kRules[] = {
@@ -54,4 +52,4 @@ std::vector<std::string> enough_against(const Grounds& grounds) {
     return enough;
 }
 
-}  // namespace puckloop::gap
+}  // namespace puckloop::gap::selftest::grammar
