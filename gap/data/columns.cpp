@@ -5,7 +5,6 @@
 #include "base/suggest.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -187,10 +186,6 @@ std::vector<std::string_view> unit_names(std::string_view si) {
     for (const UnitInfo& unit : kUnits.at(si))
         if (*unit.name != '\0') names.emplace_back(unit.name);
     return names;
-}
-
-std::string units_of(std::string_view si) {
-    return fmt::format("{}", fmt::join(unit_names(si), ", "));
 }
 
 std::string_view kind_name(Kind kind) {

@@ -44,7 +44,5 @@ std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si);
 
 /// The names of all units that are turned into `si`.
 std::vector<std::string_view> unit_names(std::string_view si);
-/// The same as a text: "m, cm, mm, um, in, km".
-std::string units_of(std::string_view si);
 
 }  // namespace puckloop::gap

@@ -11,6 +11,7 @@
 #include "scenarios/reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -113,7 +114,7 @@ void read_columns(const TomlValue& table, Experiment& experiment, const std::str
         }
         if (!unit_to_si(unit, info.unit))
             fail_at(file, value.line, fmt::format("column {} cannot be in \"{}\"", name, unit),
-                    units_of(info.unit));
+                    fmt::format("{}", fmt::join(unit_names(info.unit), ", ")));
         experiment.stated[name] = {from, unit, value.line};
     }
 }

@@ -1,6 +1,6 @@
 #include "gap/decide/left_beside.h"
 
-#include "gap/decide/rate_alone.h"
+#include "gap/decide/no_mechanism.h"
 #include "gap/decide/roles.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/scatter.h"
@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 
 namespace puckloop::gap {
@@ -27,20 +26,6 @@ std::vector<std::string> moved_by(const Study& study, const Fit& fit, std::size_
 /// Both axes of the room are one form.
 bool is_of(const std::string& form, const std::string& observable) {
     return form == observable || (form == "place" && (observable == "x_m" || observable == "y_m"));
-}
-
-/// nats that those of the forms and structures stand for which belong to observables that `is_moved` holds
-/// for.
-template <class IsMoved>
-double left_of(const std::vector<FreeForm>& forms, const std::vector<Leftover>& leftovers,
-               const IsMoved& is_moved) {
-    std::vector<FreeForm> own_forms;
-    std::vector<Leftover> own_leftovers;
-    std::ranges::copy_if(forms, std::back_inserter(own_forms),
-                         [&](const FreeForm& one) { return is_moved(one.observable); });
-    std::ranges::copy_if(leftovers, std::back_inserter(own_leftovers),
-                         [&](const Leftover& one) { return is_moved(one.observable); });
-    return std::max(gained_by_shape(own_forms), most_by_structure(own_leftovers));
 }
 
 /// Is more left of some events that are moved than all causes together know of them beyond one chance for

@@ -1,6 +1,6 @@
 #include "gap/decide/roles.h"
 
-#include "gap/decide/large_errors.h"
+#include "gap/decide/no_mechanism.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/pushes.h"
 #include "gap/diagnostics/scatter.h"
@@ -97,8 +97,7 @@ bool no_more_than_large_errors(const Study& study, const Fit& fit, const std::ve
     return !gains_enough(gain_of(gains), study.candidates().size(), outliers.size());
 }
 
-}  // namespace
-
+/// What an effect gains by the means it moves, of all it gains; NaN: it moves no mean.
 double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
     const Contrast both = contrast(study, fit, effect);
     if (!both.moves_means()) return std::numeric_limits<double>::quiet_NaN();
@@ -114,6 +113,8 @@ double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
     const double first = all - cost(mean_only), last = cost(rest_only) - none;
     return all > none ? std::max(first, last) / (all - none) : 0.0;
 }
+
+}  // namespace
 
 bool within_rounding(const Study& study, const Fit& fit, std::size_t effect) {
     const Contrast both = contrast(study, fit, effect);
@@ -187,6 +188,14 @@ double most_by_structure(const std::vector<Leftover>& leftovers) {
         most = std::max(most, -1 - std::log(p) - std::log(-std::log(p)));
     }
     return most;
+}
+
+double left_of(std::vector<FreeForm> forms, std::vector<Leftover> leftovers,
+               const std::function<bool(const std::string&)>& own) {
+    const auto is_other = [&](const auto& one) { return !own(one.observable); };
+    std::erase_if(forms, is_other);
+    std::erase_if(leftovers, is_other);
+    return std::max(gained_by_shape(forms), most_by_structure(leftovers));
 }
 
 LeftByRuns left_by_runs(const Study& study, const State& state) {

@@ -7,6 +7,7 @@
 #include "gap/verdict/verdict.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,6 @@ struct OutOfRole {
     std::string why;
     bool law_alone = false;  ///< all that was gained, a law of errors without a mechanism gains
 };
-
-/// What a fit's effects gain by the means they move, of all they gain, an effect; NaN: it moves no mean.
-double mean_share(const Study& study, const Fit& fit, std::size_t effect);
 
 /// Does an effect move means, or widen errors that lie within a step, by less than their rounding wherever it
 /// acts? Which way ties go, or whether readings are rounded down, is not known.
@@ -39,6 +37,10 @@ double gained_by_shape(const std::vector<FreeForm>& forms);
 /// nats that the surest of structures may stand for: of a p value at most -ln(-e p ln p) (Sellke, Bayarri and
 /// Berger, Am. Stat. 55, 2001). 0: none is sure.
 double most_by_structure(const std::vector<Leftover>& leftovers);
+
+/// The larger of both, of what belongs to observables that `own` holds for.
+double left_of(std::vector<FreeForm> forms, std::vector<Leftover> leftovers,
+               const std::function<bool(const std::string&)>& own);
 
 struct LeftByRuns {
     double by_run = 0.0;               ///< nats

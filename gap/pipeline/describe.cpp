@@ -193,9 +193,8 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.kind = experiment.kind;
     verdict.seed = seed;
     verdict.cautions = experiment.cautions;
-    for (const Change& gone : judged.changes)
-        verdict.cautions.push_back(
-            fmt::format("{} would have to be part of it, but {}: not named", gone.what, gone.why));
+    for (const std::string& caution : judged.cautions)
+        verdict.cautions.push_back(caution);
     verdict.decision = judged.decision;
     verdict.grounds = judged.grounds;
     verdict.doubt = judged.doubt;

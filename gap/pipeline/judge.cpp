@@ -5,6 +5,8 @@
 #include "gap/decide/roles.h"
 #include "gap/fit_test/wander.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -16,14 +18,15 @@ namespace {
 /// that stay have to be asked again.
 bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged& result) {
     if (out.effects.empty()) return false;
-    auto rest = without_doubted(study, result.chosen, out.effects, out.why);
+    auto rest = without_doubted(study, result.chosen.selection, out.effects, out.why);
     if (!rest) {
         result.grounds.out_of_role = out.why;
         result.grounds.law_alone = out.law_alone;
         return false;
     }
     for (const std::size_t one : out.effects)
-        result.changes.push_back({study.candidates()[one].effect->name, out.why});
+        result.cautions.push_back(fmt::format("{} would have to be part of it, but {}: not named",
+                                              study.candidates()[one].effect->name, out.why));
     result.chosen = std::move(*rest);
     result.diagnosis = diagnosed(study, result.chosen, how.seed);
     result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
@@ -41,21 +44,6 @@ void ask_each(const Study& study, const Judging& how, Judged& result) {
            result);
 }
 
-OutOfRole roles(const Study& study, const Judging& how, const Judged& result) {
-    const Selection& selection = result.chosen.selection;
-    return out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed);
-}
-
-std::string confirmation(const Study& study, const Judging& how, const Judged& result) {
-    return not_confirmed(study, result.chosen.selection, share_allowed(study), how.ask);
-}
-
-/// What has not been asked, since something spoke before it.
-void ask_the_rest(const Study& study, const Judging& how, Judged& result) {
-    if (result.grounds.out_of_role.empty()) result.grounds.out_of_role = roles(study, how, result).why;
-    if (result.grounds.not_confirmed.empty()) result.grounds.not_confirmed = confirmation(study, how, result);
-}
-
 }  // namespace
 
 Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judging& how) {
@@ -64,12 +52,23 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
     result.diagnosis = std::move(diagnosis);
     Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
     const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
+    const auto roles = [&] {
+        const Selection& selection = result.chosen.selection;
+        return out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers,
+                           how.seed);
+    };
+    const auto confirmation = [&] {
+        return not_confirmed(study, result.chosen.selection, share_allowed(study), how.ask);
+    };
     if (goes_on()) ask_each(study, how, result);
-    while (goes_on() && let_go(study, how, roles(study, how, result), result)) {
+    while (goes_on() && let_go(study, how, roles(), result)) {
     }
-    if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
+    if (goes_on() && how.ask) g.not_confirmed = confirmation();
     result.doubt = doubt_of(g);
-    if (how.ask_all && how.ask && !result.doubt.empty()) ask_the_rest(study, how, result);
+    if (how.ask_all && how.ask && !result.doubt.empty()) {  // since something spoke before it
+        if (g.out_of_role.empty()) g.out_of_role = roles().why;
+        if (g.not_confirmed.empty()) g.not_confirmed = confirmation();
+    }
     result.decision = decision_of(g, result.doubt);
     Grounds standing = g;
     if (!result.doubt.empty()) {

@@ -1,6 +1,6 @@
 #include "gap/pipeline/weigh.h"
 
-#include "gap/decide/rate_alone.h"
+#include "gap/decide/no_mechanism.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/evidence/criterion.h"
@@ -73,17 +73,10 @@ bool any_adds_up(const Study& study) {
 
 /// What functions of covariates gain of what does not add up, or the surest structure there may stand for.
 double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
-    const auto& all = study.model().observables();
-    const auto is_other = [&](const auto& one) {
-        return std::ranges::none_of(all, [&](const Observable& observable) {
-            return observable.name == one.observable && !adds_up(observable);
-        });
-    };
-    auto forms = diagnosis.free_forms;
-    auto structures = diagnosis.structures;
-    std::erase_if(forms, is_other);
-    std::erase_if(structures, is_other);
-    return std::max(gained_by_shape(forms), most_by_structure(structures));
+    return left_of(diagnosis.free_forms, diagnosis.structures, [&](const std::string& name) {
+        return std::ranges::any_of(study.model().observables(),
+                                   [&](const Observable& one) { return one.name == name && !adds_up(one); });
+    });
 }
 
 /// Notes what is left for sure.

@@ -12,24 +12,18 @@ namespace puckloop::gap {
 
 namespace {
 
-/// Rows in which both columns are there.
-std::array<std::vector<double>, 2> both(const std::vector<double>& a, const std::vector<double>& b) {
-    std::array<std::vector<double>, 2> known;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        if (!std::isnan(a[i] + b[i])) known[0].push_back(a[i]), known[1].push_back(b[i]);
-    return known;
-}
-
 constexpr std::size_t kFew = 8;  // rows that say nothing
 
-/// Of two columns over rows where both are there; 0 when there are few.
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-    const auto [x, y] = both(a, b);
-    return x.size() < kFew ? 0.0 : stats::correlation(x, y);
+/// Of two columns, or of their ranks, over rows where both are there; 0 when there are few.
+double correlation(const std::vector<double>& a, const std::vector<double>& b, bool of_ranks = false) {
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (!std::isnan(a[i] + b[i])) x.push_back(a[i]), y.push_back(b[i]);
+    if (x.size() < kFew) return 0.0;
+    return of_ranks ? stats::correlation(stats::ranks(x), stats::ranks(y)) : stats::correlation(x, y);
 }
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-    const auto [x, y] = both(a, b);
-    return correlation(stats::ranks(x), stats::ranks(y));
+    return correlation(a, b, true);
 }
 
 /// Do some runs correlate clearly in this direction, and none the other way? In one run among others that is

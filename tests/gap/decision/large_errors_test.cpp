@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "gap/decide/decide.h"
-#include "gap/decide/large_errors.h"
+#include "gap/decide/no_mechanism.h"
 #include "gap/decide/roles.h"
 
 #include <catch2/catch.hpp>

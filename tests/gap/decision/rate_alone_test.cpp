@@ -1,7 +1,7 @@
 // Losses that keep to a course are not chance's, however much better any chance of loss is than none.
 
 #include "base/random.h"
-#include "gap/decide/rate_alone.h"
+#include "gap/decide/no_mechanism.h"
 #include "gap/pipeline/analyse.h"
 #include "tests/gap/simulated.h"
 

@@ -1,4 +1,4 @@
-#include "gap/decide/large_errors.h"
+#include "gap/decide/no_mechanism.h"
 
 #include "gap/fit/filter.h"
 #include "gap/fit/likelihood.h"
@@ -86,6 +86,13 @@ std::vector<Row> rows_of(const Predicted& predicted, const NoiseParameters& nois
     return rows;
 }
 
+/// How many of some rows happened; half of one each way is known beforehand (Jeffreys).
+struct Count {
+    double yes = 0.5, no = 0.5;
+    void add(double y) { (y > 0.5 ? yes : no) += 1; }
+    double score(double y) const { return std::log((y > 0.5 ? yes : no) / (yes + no)); }
+};
+
 }  // namespace
 
 std::vector<double> scores_with_large_errors(const Study& study, const Fit& fit,
@@ -115,6 +122,30 @@ std::vector<double> scores_with_large_errors(const Study& study, const Fit& fit,
             std::transform(scores.begin(), scores.end(), won.begin(), scores.begin(), std::plus<>());
     }
     return scores;
+}
+
+double gained_by_rate(const Study& study, const Selection& selection, std::size_t o) {
+    const Observable& observable = study.model().observables()[o];
+    if (observable.noise != NoiseKind::Event) return 0.0;
+    const auto& fold = study.fold_of()[o];
+    std::vector<Count> others(study.folds());
+    for (std::size_t i = 0; i < fold.size(); ++i)
+        for (std::size_t k = 0; k < others.size(); ++k)
+            if (fold[i] != static_cast<int>(k)) others[k].add(observable.y[i]);
+    double gained = 0.0;
+    for (std::size_t i = 0; i < fold.size(); ++i)
+        gained += others[static_cast<std::size_t>(fold[i])].score(observable.y[i]) -
+                  selection.held_none.score[o][i];
+    return std::max(gained, 0.0);
+}
+
+double lowered_by_rate(const Observable& observable, double cost) {
+    if (observable.noise != NoiseKind::Event) return 0.0;
+    Count all;
+    for (const double y : observable.y)
+        all.add(y);
+    const auto added = [&](double sum, double y) { return sum - all.score(y); };
+    return std::max(cost - std::accumulate(observable.y.begin(), observable.y.end(), 0.0, added), 0.0);
 }
 
 }  // namespace puckloop::gap
