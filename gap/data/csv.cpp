@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <string_view>
 
 namespace puckloop::gap {
 
@@ -98,19 +96,6 @@ char separator_of(std::string_view header) {
     for (const char separator : {',', ';', '\t'})
         if (csv_cells(header, separator).size() > 1) return separator;
     return ',';
-}
-
-/// Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of its column shows which:
-/// programs that group thousands do so beside columns with decimals.
-void refuse_thousands(const std::filesystem::path& file, const CsvTable& table,
-                      const std::vector<Commas>& commas) {
-    for (std::size_t i = 0; i < commas.size(); ++i)
-        if (commas[i].any && commas[i].thousands)
-            throw InputError(file.string(), "",
-                             fmt::format("column \"{}\" has three digits behind every comma: thousands or "
-                                         "decimals (\"1,200\" is 1200 or 1.2)?",
-                                         table.names[i]),
-                             "nothing between thousands, and a decimal point");
 }
 
 /// Lines that are quoted as a whole are one cell each.
@@ -228,9 +213,18 @@ CsvTable read_csv(const std::filesystem::path& file, Problems& problems) {
     if (table.rows() == 0)
         throw InputError(file.string(), "", "has no rows", "at least one below the header");
     table.decimal_commas = decimal == Decimal::Comma;
-    if (table.decimal_commas && separator == ',') refuse_thousands(file, table, commas);
-    for (std::size_t i = 0; table.decimal_commas && i < commas.size(); ++i)
-        if (commas[i].any && commas[i].thousands) table.like_thousands.push_back(table.names[i]);
+    for (std::size_t i = 0; table.decimal_commas && i < commas.size(); ++i) {
+        if (!commas[i].any || !commas[i].thousands) continue;
+        // Between commas a quoted "1,200" is as likely 1200 as 1.2, where no number of its column shows
+        // which: programs that group thousands do so beside columns with decimals.
+        if (separator == ',')
+            throw InputError(file.string(), "",
+                             fmt::format("column \"{}\" has three digits behind every comma: thousands or "
+                                         "decimals (\"1,200\" is 1200 or 1.2)?",
+                                         table.names[i]),
+                             "nothing between thousands, and a decimal point");
+        table.like_thousands.push_back(table.names[i]);
+    }
     return table;
 }
 

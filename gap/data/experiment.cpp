@@ -1,6 +1,5 @@
 #include "gap/data/experiment.h"
 
-#include "base/error.h"
 #include "base/suggest.h"
 #include "base/toml_file.h"
 #include "gap/data/columns.h"
@@ -10,7 +9,6 @@
 #include "gap/validate/checks.h"
 #include "scenarios/reader.h"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -17,7 +17,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 
 namespace puckloop::gap {
 
@@ -196,26 +195,6 @@ double left_of(std::vector<FreeForm> forms, std::vector<Leftover> leftovers,
     std::erase_if(forms, is_other);
     std::erase_if(leftovers, is_other);
     return std::max(gained_by_shape(forms), most_by_structure(leftovers));
-}
-
-LeftByRuns left_by_runs(const Study& study, const State& state) {
-    LeftByRuns left;
-    const auto differences = run_differences(study.model(), state);
-    const auto jumps = change_points(study.model(), state);
-    const auto looks = static_cast<double>(differences.size());
-    std::map<std::string, double> by_run;
-    for (const RunDifference& one : differences) {
-        const double p = std::min(1.0, looks * one.p_value);
-        if (p < thresholds::kSure && one.gain > thresholds::kStandardErrors * one.sd)
-            by_run[one.observable] = std::max(by_run[one.observable], one.gain);
-        if (p < thresholds::kReported) left.structures.push_back({one.observable, "run", p, one.shape});
-    }
-    for (const auto& [observable, gain] : by_run)
-        left.by_run += gain;
-    for (const ChangePoint& one : jumps)
-        if (one.p_value < thresholds::kReported)
-            left.structures.push_back({one.observable, "place in a run", one.p_value, one.shape});
-    return left;
 }
 
 }  // namespace puckloop::gap

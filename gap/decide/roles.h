@@ -42,10 +42,4 @@ double most_by_structure(const std::vector<Leftover>& leftovers);
 double left_of(std::vector<FreeForm> forms, std::vector<Leftover> leftovers,
                const std::function<bool(const std::string&)>& own);
 
-struct LeftByRuns {
-    double by_run = 0.0;               ///< nats
-    std::vector<Leftover> structures;  ///< worth reporting, p corrected
-};
-LeftByRuns left_by_runs(const Study& study, const State& state);
-
 }  // namespace puckloop::gap

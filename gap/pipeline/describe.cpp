@@ -6,6 +6,7 @@
 #include "gap/fit/intervals.h"
 #include "gap/next_experiment/suggest.h"
 #include "gap/overlay/overlay_parts.h"
+#include "gap/pipeline/weigh.h"
 #include "gap/predictive/check.h"
 #include "gap/stats/tails.h"
 #include "gap/validate/placements.h"

@@ -3,6 +3,7 @@
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/leftovers.h"
 #include "gap/diagnostics/series.h"
+#include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/wander.h"
 #include "gap/predictive/check.h"
 #include "gap/predictive/discrepancies.h"
@@ -13,8 +14,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
-#include <utility>
 
 namespace puckloop::gap {
 
@@ -89,6 +90,28 @@ std::vector<Leftover> not_replicated(const Study& study, const State& state,
     return all;
 }
 
+/// Nats that numbers of runs gain; runs that differ and jumps inside runs that are worth reporting.
+std::pair<double, std::vector<Leftover>> left_by_runs(const Study& study, const State& state) {
+    double nats = 0.0;
+    std::vector<Leftover> left;
+    const auto differences = run_differences(study.model(), state);
+    const auto jumps = change_points(study.model(), state);
+    const auto looks = static_cast<double>(differences.size());
+    std::map<std::string, double> by_run;
+    for (const RunDifference& one : differences) {
+        const double p = std::min(1.0, looks * one.p_value);
+        if (p < thresholds::kSure && one.gain > thresholds::kStandardErrors * one.sd)
+            by_run[one.observable] = std::max(by_run[one.observable], one.gain);
+        if (p < thresholds::kReported) left.push_back({one.observable, "run", p, one.shape});
+    }
+    for (const auto& [observable, gain] : by_run)
+        nats += gain;
+    for (const ChangePoint& one : jumps)
+        if (one.p_value < thresholds::kReported)
+            left.push_back({one.observable, "place in a run", one.p_value, one.shape});
+    return {nats, std::move(left)};
+}
+
 }  // namespace
 
 Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed) {
@@ -99,7 +122,8 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     found.leftovers = leftovers_of(study.experiment(), observables, found.series, seed);
     name_placements(study.experiment(), found);
     found.free_forms = free_forms_of(study.experiment(), study.model(), after, seed);
-    found.by_runs = left_by_runs(study, after);
+    const auto [left_by_run, of_runs] = left_by_runs(study, after);
+    found.left_by_run = left_by_run;
     // Are the forms of the chosen effects told from their neighbours'?
     for (const Trial& step : chosen.selection.steps)
         found.forms.emplace_back(step.effect,
@@ -111,7 +135,7 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     }
     found.structures = found.leftovers;
     const Selection& selection = chosen.selection;
-    for (const auto& more : {found.by_runs.structures, wandering(study, selection.chosen)})
+    for (const auto& more : {of_runs, wandering(study, selection.chosen)})
         found.leftovers.insert(found.leftovers.end(), more.begin(), more.end());
     std::ranges::stable_sort(found.leftovers, {}, &Leftover::p_value);
     return found;

@@ -1,7 +1,6 @@
 #pragma once
 // Diagnose: what is left with the chosen causes, asked by discrepancies that know no effect. Changes nothing.
 
-#include "gap/decide/roles.h"
 #include "gap/fit_test/rival_forms.h"
 #include "gap/pipeline/choose.h"
 #include "gap/verdict/verdict.h"
@@ -19,7 +18,7 @@ struct Diagnosis {
                                               ///< wanders; the surest first
     std::vector<FreeForm> free_forms;         ///< corrections without a mechanism
     std::vector<PredictiveCheck> predictive;  ///< of this fit; none where all adds up
-    LeftByRuns by_runs;                       ///< numbers of runs, jumps inside runs
+    double left_by_run = 0.0;                 ///< nats that a number for each run gains
     std::vector<std::pair<std::size_t, FormVerdict>> forms;  ///< of the chosen effects (candidates)
 };
 

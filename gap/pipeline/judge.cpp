@@ -1,9 +1,12 @@
 #include "gap/pipeline/judge.h"
 
-#include "gap/decide/decide.h"
 #include "gap/decide/left_beside.h"
 #include "gap/decide/roles.h"
+#include "gap/diagnostics/scatter.h"
+#include "gap/evidence/criterion.h"
 #include "gap/fit_test/wander.h"
+#include "gap/pipeline/weigh.h"
+#include "gap/stats/series.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +16,55 @@
 namespace puckloop::gap {
 
 namespace {
+
+/// What each cause says now that others are gone; those that say too little go, the weakest first. False: the
+/// first of them would have to go.
+bool weigh_again(const Study& study, Selection& selection) {
+    while (true) {
+        std::size_t weakest = 0;
+        for (Trial& step : selection.steps) {
+            const Fit fewer = without_effects(study, selection.chosen, {step.effect});
+            step.delta_bic = fewer.bic - selection.chosen.bic;
+            step.held = study.gain(study.hold_out(fewer), selection.held_chosen);
+            if (step.held.sum < selection.steps[weakest].held.sum)
+                weakest = static_cast<std::size_t>(&step - selection.steps.data());
+        }
+        const Trial least = selection.steps[weakest];
+        if (gains_enough(least.held, study.candidates().size(), 1)) return true;
+        if (weakest == 0) return false;
+        selection.trials[least.effect].remark = "says too little without what was doubted beside it";
+        selection.chosen = without_effects(study, selection.chosen, {least.effect});
+        selection.held_chosen = study.hold_out(selection.chosen);
+        selection.steps.erase(selection.steps.begin() + static_cast<std::ptrdiff_t>(weakest));
+    }
+}
+
+/// Without effects that are doubted by themselves. None: one of them is the first, which the others were
+/// built on, or the first would have to go for saying too little alone.
+std::optional<Chosen> without_doubted(const Study& study, const Selection& all,
+                                      const std::vector<std::size_t>& doubted, const std::string& doubt) {
+    if (stats::contains(doubted, all.steps.front().effect)) return std::nullopt;
+    Selection selection = all;
+    selection.chosen = without_effects(study, selection.chosen, doubted);
+    selection.held_chosen = study.hold_out(selection.chosen);
+    for (const std::size_t one : doubted)
+        selection.trials[one].remark = "comes nearest to what is left, but " + doubt;
+    std::erase_if(selection.steps, [&](const Trial& step) { return stats::contains(doubted, step.effect); });
+    if (!weigh_again(study, selection)) return std::nullopt;
+    return chosen_of(study, std::move(selection));
+}
+
+/// Without any: an effect fitted to what it does not describe soaks up some of it and leaves much.
+Chosen taken_back(const Chosen& all, const std::string& doubt) {
+    Chosen none = all;
+    Selection& selection = none.selection;
+    for (const Trial& step : selection.steps)
+        selection.trials[step.effect].remark = "came nearest, but " + doubt;
+    selection.steps.clear();
+    selection.chosen = none.final = selection.none;
+    selection.held_chosen = selection.held_none;
+    return none;
+}
 
 /// Causes that are doubted by themselves go where the first of them stands without them; then true, and those
 /// that stay have to be asked again.

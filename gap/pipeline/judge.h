@@ -4,7 +4,8 @@
 // is diagnosed anew.
 
 #include "gap/decide/confirm.h"
-#include "gap/pipeline/weigh.h"
+#include "gap/decide/decide.h"
+#include "gap/pipeline/diagnose.h"
 
 #include <cstdint>
 #include <functional>

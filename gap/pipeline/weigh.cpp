@@ -1,9 +1,9 @@
 #include "gap/pipeline/weigh.h"
 
 #include "gap/decide/no_mechanism.h"
+#include "gap/decide/roles.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
-#include "gap/evidence/criterion.h"
 #include "gap/fit_test/wander.h"
 
 #include <fmt/format.h>
@@ -129,7 +129,7 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.left_by_shape = gained_by_shape(diagnosis.free_forms);
     for (const auto& [effect, form] : diagnosis.forms)
         g.left_by_form = std::max(g.left_by_form, form.left);
-    g.left_by_run = diagnosis.by_runs.by_run;
+    g.left_by_run = diagnosis.left_by_run;
     g.left_by_structure = most_by_structure(diagnosis.structures);
     g.sums = any_adds_up(study);
     g.left_of_readings = left_of_readings(study, diagnosis);

@@ -53,7 +53,6 @@ std::string placement_shape(const Experiment& experiment, const Series& series) 
         return {};
     std::vector<double> means;
     stats::Series inside;
-    double rows = 0;
     for (std::size_t p = 0; p < placements.size(); ++p) {
         std::vector<double> rest;
         for (std::size_t i = placements[p].first; i < placements[p].last; ++i)
@@ -63,11 +62,10 @@ std::string placement_shape(const Experiment& experiment, const Series& series) 
             if (std::isfinite(r)) {
                 inside.value.push_back(r - means.back());
                 inside.run.push_back(static_cast<int>(p));
-                rows += 1;
             }
     }
     const double between = stats::standard_deviation(means), within = stats::standard_deviation(inside.value);
-    const double each = rows / static_cast<double>(placements.size());
+    const double each = static_cast<double>(inside.size()) / static_cast<double>(placements.size());
     const double by_chance = within * std::sqrt(stats::correlation_length(inside) / each);
     if (!(between > within && between > kClearly * by_chance)) return {};
     return fmt::format("differs from placement to placement by {} (standard deviation of {} placements), "

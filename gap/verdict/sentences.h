@@ -1,7 +1,6 @@
 #pragma once
 // The verdict in plain words.
 
-#include "gap/fit/select.h"
 #include "gap/fit_test/rival_forms.h"
 #include "gap/verdict/verdict.h"
 
