@@ -142,8 +142,10 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
             value + fall_off(study, fit, index, precision.quantile, std::min(most, freed.high - value), 1),
             {}};
     }
-    Interval interval{
-        std::max(value - reach + shift, freed.low), std::min(value + reach + shift, freed.high), {}};
+    const double low = !one_sided          ? value - reach
+                       : reach < 2 * value ? value * std::pow(1 - reach / (2 * value), 2)
+                                           : 0.0;
+    Interval interval{std::max(low, freed.low), std::min(value + reach + shift, freed.high), {}};
     const double lost = precision.quantile * precision.quantile / 2;
     // All of a share is an end of what there is, where slopes say nothing of what lies beyond: it belongs to
     // the interval unless the likelihood falls off before it.

@@ -4,6 +4,7 @@
 #include "gap/decide/roles.h"
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
+#include "gap/fit/intervals.h"
 #include "gap/fit_test/wander.h"
 #include "gap/pipeline/weigh.h"
 #include "gap/stats/series.h"
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace puckloop::gap {
@@ -85,6 +87,25 @@ bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged
     return true;
 }
 
+/// Effects after the first that may as well be nothing: the 90 % intervals of all their numbers hold the
+/// neutral value. Where rows jump with a number they may gain all the same.
+std::vector<std::size_t> maybe_nothing(const Study& study, const Selection& selection) {
+    std::vector<std::size_t> effects;
+    if (selection.steps.size() < 2) return effects;
+    const Fit& fit = selection.chosen;
+    const Precision precision = precision_of(study, fit);
+    const auto may_be_nothing = [&](const Freed& freed) {
+        const auto j = std::ranges::find(fit.freed, freed.index, &Freed::index) - fit.freed.begin();
+        const Interval known = interval_of(study, fit, precision, static_cast<std::size_t>(j));
+        const double neutral = study.model().parameters()[freed.index].neutral;
+        return known.low <= neutral && neutral <= known.high;
+    };
+    for (const Trial& step : std::span(selection.steps).subspan(1))
+        if (std::ranges::all_of(study.candidates()[step.effect].freed, may_be_nothing))
+            effects.push_back(step.effect);
+    return effects;
+}
+
 void ask_each(const Study& study, const Judging& how, Judged& result) {
     const Diagnosis& found = result.diagnosis;
     // That a sum wanders as well takes nothing from what a cause makes of it.
@@ -113,6 +134,9 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
         return not_confirmed(study, result.chosen.selection, share_allowed(study), how.ask);
     };
     if (goes_on()) ask_each(study, how, result);
+    if (goes_on())
+        let_go(study, how, {maybe_nothing(study, result.chosen.selection), "it may as well be nothing"},
+               result);
     while (goes_on() && let_go(study, how, roles(), result)) {
     }
     if (goes_on() && how.ask) g.not_confirmed = confirmation();

@@ -170,6 +170,34 @@ TEST_CASE("commands lost in two runs of many are named, in one they are not", "[
     CHECK(lost_in(0).decision == Decision::NoEffect);
 }
 
+TEST_CASE("beside batches a drift that moves none of their rows by a slope is not named", "[gap][decide]") {
+    constexpr double kPeriod = 0.03, kBatch = 0.0064, kDrift = 376e-6, kWait = 0.0034;
+    Experiment experiment;
+    experiment.kind = Kind::Timing;
+    for (int r = 0; r < 8; ++r) {
+        RandomStream random(23, "batches and a drift " + std::to_string(r));
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = 160;
+        for (int k = 0; k < 160; ++k) {
+            const double sent = kPeriod * k * (1 + kDrift) + 0.1 - kWait * std::log(1 - random.uniform());
+            run.columns["seq"].push_back(k);
+            run.columns["nominal_period"].push_back(kPeriod);
+            run.columns["t_robot_s"].push_back(kPeriod * k);
+            run.columns["t_host_s"].push_back(std::ceil(sent / kBatch) * kBatch + 1e-4 * random.normal());
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    const Verdict verdict = analyse(experiment);
+    INFO(verdict.summary);
+    REQUIRE(verdict.decision == Decision::Named);
+    CHECK(verdict.causes.size() == 1);
+    CHECK(verdict.causes.front().name == "batching");
+    CHECK(std::ranges::any_of(verdict.cautions, [](const std::string& one) {
+        return one.starts_with("clock_drift would have to be part of it");
+    }));
+}
+
 TEST_CASE("the best of a catalogue meets the criterion by chance as seldom as is claimed") {
     // Held-out scores of one number more where it is nothing: z^2/2 - (z - e)^2/2 with an error e of fitting.
     RandomStream random(2, "criterion");

@@ -81,6 +81,21 @@ TEST_CASE("pushes each of which takes the one before back are none", "[gap][push
     CHECK(pattern->pushes > 1.5 * pattern->expected);
 }
 
+TEST_CASE("a tracker that loses its place for some rows and comes back is no push", "[gap][pushes]") {
+    int left = 0;  // rows until it comes back
+    double away = 0.0;
+    const Experiment experiment = toy_drives([&](RandomStream& random, int, int k, double) {
+        const bool goes = left == 0 && k < kToyLeg - 15 && random.uniform() < 0.04, comes = left == 1;
+        if (goes) away = any_way(random);
+        left = goes ? 4 + static_cast<int>(8 * random.uniform()) : std::max(left - 1, 0);
+        return Made{1.0, goes || comes ? 0.012 : 0.0, goes ? away : away + std::numbers::pi};
+    });
+    const Study study(experiment, 1);
+    const auto pattern = push_pattern(experiment, study.model(), fit_of_pushes(study).fitted.state);
+    REQUIRE(pattern.has_value());
+    CHECK(pattern->where == "back to where the push before began");
+}
+
 TEST_CASE("pushes along one line or in one run of eight are none", "[gap][pushes]") {
     const bool along = GENERATE(true, false);
     int row = 0;
