@@ -383,14 +383,14 @@ State Study::without(std::size_t effect, State state) const {
 /// that are kept for long take pushes for themselves.
 bool Study::lighten_tails(State& state) const {
     bool any = false;
-    const Prediction prediction = model_->predicted(state.values);
     for (std::size_t o = 0; o < state.noise.size(); ++o) {
         const Observable& one = model_->observables()[o];
         if (noise_parameters(one) == 0) continue;
         NoiseParameters& noise = state.noise[o];
         if (std::exp(noise.log_tail) > kLightEnough) continue;
         any = true;
-        if (adds_up(one) && noise.memory > kLongMemory) noise = first_guess(one, prediction[o]);
+        if (adds_up(one) && noise.memory > kLongMemory)
+            noise = first_guess(one, model_->predicted(state.values)[o]);
         noise.log_tail = std::log(kLightTail);
     }
     return any;

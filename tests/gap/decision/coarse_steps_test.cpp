@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "gap/decide/roles.h"
 #include "gap/pipeline/analyse.h"
+#include "tests/gap/candidate.h"
 #include "tests/gap/simulated.h"
 
 #include <catch2/catch.hpp>
@@ -76,12 +77,7 @@ TEST_CASE("noise of a share of a count is no noise that grows with the reading")
     CHECK(analyse(experiment).decision == Decision::NoEffect);
     // Were it taken, it would widen readings by less than their rounding.
     const Study study(experiment, 1);
-    const auto& all = study.candidates();
-    const auto grows = static_cast<std::size_t>(
-        std::ranges::find_if(
-            all,
-            [](const Candidate& one) { return one.effect->name == std::string_view("proportional_noise"); }) -
-        all.begin());
+    const std::size_t grows = candidate(study, "proportional_noise");
     Fit fit = study.fit_set({grows}, study.fit_none().fitted.state);
     double& share = fit.fitted.state.values[fit.freed.front().index];
     share = 2e-4;

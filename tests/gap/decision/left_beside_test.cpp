@@ -2,6 +2,7 @@
 
 #include "gap/decide/left_beside.h"
 #include "gap/pipeline/analyse.h"
+#include "tests/gap/candidate.h"
 
 #include <catch2/catch.hpp>
 
@@ -34,13 +35,6 @@ Experiment messages(double received) {
         experiment.runs.push_back(std::move(run));
     }
     return experiment;
-}
-
-std::size_t candidate(const Study& study, const std::string& name) {
-    const auto& all = study.candidates();
-    return static_cast<std::size_t>(
-        std::find_if(all.begin(), all.end(), [&](const Candidate& one) { return one.effect->name == name; }) -
-        all.begin());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "gap/fit/study.h"
 #include "gap/fit_test/wander.h"
 #include "gap/residual_model/free_form.h"
+#include "tests/gap/candidate.h"
 #include "tests/gap/decision/toy_drives.h"
 
 #include <catch2/catch.hpp>
@@ -32,11 +33,7 @@ State pushed_state(const Study& study) {
 }
 
 Fit fit_of_pushes(const Study& study) {
-    const auto& all = study.candidates();
-    const auto effect = std::find_if(all.begin(), all.end(), [](const Candidate& one) {
-        return one.effect->name == std::string_view("collision_push");
-    });
-    return study.fit_set({static_cast<std::size_t>(effect - all.begin())}, study.fit_none().fitted.state);
+    return study.fit_set({candidate(study, "collision_push")}, study.fit_none().fitted.state);
 }
 
 double any_way(RandomStream& random) {
@@ -201,12 +198,7 @@ TEST_CASE("an outlier in a run's first row is no push", "[gap][pushes]") {
     for (const std::size_t r : {1U, 4U})
         experiment.runs[r].columns["x_m"][0] -= 0.012;
     const Study study(experiment, 1);
-    const auto& candidates = study.candidates();
-    const auto pushes = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& one) {
-        return one.effect->name == std::string_view("collision_push");
-    });
     const Fit none = study.fit_none();
-    const Fit pushed =
-        study.fit_set({static_cast<std::size_t>(pushes - candidates.begin())}, none.fitted.state, kQuick);
+    const Fit pushed = study.fit_set({candidate(study, "collision_push")}, none.fitted.state, kQuick);
     CHECK(none.bic - pushed.bic < 0);
 }

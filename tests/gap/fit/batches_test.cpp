@@ -4,15 +4,14 @@
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
 #include "gap/fit/study.h"
+#include "tests/gap/candidate.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -93,12 +92,6 @@ Found found_in(const Experiment& experiment) {
     for (const auto& freed : selection.chosen.freed)
         found.values.push_back(selection.chosen.fitted.state.values[freed.index]);
     return found;
-}
-
-std::size_t candidate(const Study& study, std::string_view name) {
-    for (std::size_t i = 0; i < study.candidates().size(); ++i)
-        if (study.candidates()[i].effect->name == name) return i;
-    throw std::logic_error("no such effect");
 }
 
 /// The batch as it is fitted, and what else fits as well, s.

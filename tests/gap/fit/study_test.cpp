@@ -4,6 +4,7 @@
 #include "gap/fit/parallel.h"
 #include "gap/fit/select.h"
 #include "gap/fit/thinned.h"
+#include "tests/gap/candidate.h"
 
 #include <catch2/catch.hpp>
 
@@ -71,12 +72,6 @@ Experiment drives(std::uint64_t seed, double lag, std::size_t runs = 6, std::siz
             run.columns["reading"][k] = std::round(black + (white - black) * grey + run.columns["noise"][k]);
         }
     return experiment;
-}
-
-std::size_t candidate(const Study& study, std::string_view name) {
-    for (std::size_t i = 0; i < study.candidates().size(); ++i)
-        if (study.candidates()[i].effect->name == name) return i;
-    throw std::logic_error("no such effect");
 }
 
 }  // namespace
