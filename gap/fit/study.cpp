@@ -423,8 +423,13 @@ HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
         held.mean.emplace_back(observable.y.size(), 0.0);
     }
     in_parallel(folds_, threads_, [&](std::size_t k) {
-        const auto weights = rows_of_parts([&](int fold) { return fold != static_cast<int>(k); });
-        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, effort);
+        Weights others;
+        for (const auto& folds : fold_) {
+            others.emplace_back();
+            for (const int fold : folds)
+                others.back().push_back(fold != static_cast<int>(k) ? 1.0 : 0.0);
+        }
+        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, others, effort);
         const Prediction prediction = model_->predicted(part.state.values);
         const auto costs = costs_at(*model_, part.state, prediction);
         // What the noise loses for being off the simulator's claim is lost by every row alike.

@@ -86,17 +86,6 @@ class Study {
     HeldOut hold_out(const Fit& fit, const Effort& effort = kPart) const;
     /// What `after` gains over `before` on rows that were not fitted, of all observables or of one.
     Gain gain(const HeldOut& before, const HeldOut& after, std::optional<std::size_t> observable = {}) const;
-    /// Weights that are 1 for the rows of some parts only: `in(part)`.
-    template <class In>
-    Weights rows_of_parts(const In& in) const {
-        Weights weights;
-        for (const auto& folds : fold_) {
-            weights.emplace_back();
-            for (const int fold : folds)
-                weights.back().push_back(in(fold) ? 1.0 : 0.0);
-        }
-        return weights;
-    }
 
   private:
     /// The part of `whole`.
