@@ -61,11 +61,10 @@ std::vector<Rows::Beat> Rows::beats(const std::vector<double>& time) const {
     for (std::size_t i = 1; i < size(); ++i)
         if (starts_[i] == 0 && time[i] > time[i - 1]) steps[run_[i]].push_back(time[i] - time[i - 1]);
     std::vector<Beat> beats;
-    for (auto& of_run : steps) {
+    for (const auto& of_run : steps) {
         Beat& beat = beats.emplace_back();
         if (of_run.empty()) continue;
-        std::ranges::sort(of_run);
-        beat.usual = of_run[of_run.size() / 2];
+        beat.usual = stats::upper_median(of_run);
         const auto on = std::ranges::count_if(of_run, [&](double step) {
             return std::abs(std::remainder(step, beat.usual)) < kOffBeat * beat.usual;
         });

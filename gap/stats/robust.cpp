@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 
 namespace puckloop::gap::stats {
@@ -13,21 +12,7 @@ namespace {
 
 constexpr double kFiveToNinetyFive = 2 * 1.645;  // the same, in standard deviations
 
-double sorted_quantile(const std::vector<double>& sorted, double q) {
-    if (sorted.empty()) return NAN;
-    const double place = q * static_cast<double>(sorted.size() - 1);
-    const auto low = static_cast<std::size_t>(place);
-    const std::size_t high = std::min(low + 1, sorted.size() - 1);
-    return sorted[low] + (place - static_cast<double>(low)) * (sorted[high] - sorted[low]);
-}
-
 }  // namespace
-
-std::vector<double> finite(const std::vector<double>& values) {
-    std::vector<double> kept;
-    std::ranges::copy_if(values, std::back_inserter(kept), [](double v) { return std::isfinite(v); });
-    return kept;
-}
 
 double mean(const std::vector<double>& values) {
     const std::vector<double> kept = finite(values);
@@ -43,23 +28,6 @@ double standard_deviation(const std::vector<double>& values) {
     for (const double v : kept)
         squares += (v - centre) * (v - centre);
     return std::sqrt(squares / static_cast<double>(kept.size() - 1));
-}
-
-double quantile(std::vector<double> values, double q) {
-    values = finite(values);
-    std::ranges::sort(values);
-    return sorted_quantile(values, q);
-}
-
-double median(const std::vector<double>& values) {
-    return quantile(values, 0.5);
-}
-
-double upper_median(std::vector<double> values) {
-    if (values.empty()) return NAN;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 double robust_scale(const std::vector<double>& values) {

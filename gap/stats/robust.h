@@ -1,22 +1,18 @@
 #pragma once
 // Location, scale and quantiles that a few wild values cannot move. NaN values are left out throughout.
 
+#include "base/quantile.h"
+
 #include <vector>
 
 namespace puckloop::gap::stats {
 
-/// The values that are finite.
-std::vector<double> finite(const std::vector<double>& values);
+using puckloop::finite, puckloop::median, puckloop::quantile, puckloop::upper_median;
+
 /// Mean of the finite values; NaN when there is none.
 double mean(const std::vector<double>& values);
 /// Sample standard deviation (n - 1); NaN below two values.
 double standard_deviation(const std::vector<double>& values);
-/// Quantile by linear interpolation between order statistics, 0 <= q <= 1; NaN when empty.
-double quantile(std::vector<double> values, double q);
-double median(const std::vector<double>& values);
-/// The order statistic at n / 2 (of an even number the upper one of the two in the middle), in linear time.
-/// No NaN allowed; NaN when empty.
-double upper_median(std::vector<double> values);
 /// A normal sample's standard deviation over its median absolute deviation.
 inline constexpr double kMadToSigma = 1.4826;
 

@@ -1,6 +1,7 @@
 #include "tools/bench/figure.h"
 
 #include "base/error.h"
+#include "base/quantile.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,18 +47,11 @@ std::string row(const Figure& figure, bool peers) {
 
 }  // namespace
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-}
-
 double median_ratio(const std::vector<double>& values, const std::vector<double>& others) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < std::min(values.size(), others.size()); ++i)
         if (others[i] != 0) ratios.push_back(values[i] / others[i]);
-    return median(ratios);
+    return ratios.empty() ? 0.0 : median(ratios);
 }
 
 std::string figures_table(const std::vector<Figure>& figures, const OtherLoad& load) {

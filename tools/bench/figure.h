@@ -18,9 +18,6 @@ struct Figure {
     std::string note{};              ///< for the reader, such as a trace that differs; empty: nothing
 };
 
-/// Of an even number the mean of the middle two; 0 of none.
-double median(std::vector<double> values);
-
 /// Median over the rounds of value / other; 0 if there is none.
 double median_ratio(const std::vector<double>& values, const std::vector<double>& others);
 

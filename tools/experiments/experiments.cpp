@@ -1,6 +1,7 @@
 #include "tools/experiments/experiments.h"
 
 #include "base/error.h"
+#include "base/quantile.h"
 
 #include <fmt/format.h>
 
@@ -144,10 +145,8 @@ std::vector<Bin> binned(const Readings& readings, double width) {
     std::vector<Bin> result;
     for (auto& [number, values] : bins) {
         std::sort(values.begin(), values.end());
-        const auto rank = [&values = values](double share) {
-            return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-        };
-        result.push_back({static_cast<double>(number) * width, rank(0.1), rank(0.5), rank(0.9),
+        result.push_back({static_cast<double>(number) * width, sorted_quantile(values, 0.1),
+                          sorted_quantile(values, 0.5), sorted_quantile(values, 0.9),
                           static_cast<int>(values.size())});
     }
     return result;

@@ -1,5 +1,6 @@
 #include "tools/rab/summary.h"
 
+#include "base/quantile.h"
 #include "protocols/rab_reading.h"
 
 #include <fmt/format.h>
@@ -53,12 +54,7 @@ std::optional<PublishedStrength> published_at(double distance) {
 Spread spread_of(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
-    const auto at = [&values](double share) {
-        const double place = share * static_cast<double>(values.size() - 1);
-        const auto low = static_cast<std::size_t>(place);
-        const std::size_t high = std::min(low + 1, values.size() - 1);
-        return values[low] + (place - static_cast<double>(low)) * (values[high] - values[low]);
-    };
+    const auto at = [&values](double share) { return sorted_quantile(values, share); };
     return {at(0.05), at(0.10), at(0.25), at(0.5), at(0.75), at(0.90), at(0.95)};
 }
 

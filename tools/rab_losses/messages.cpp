@@ -1,6 +1,8 @@
 #include "tools/rab_losses/messages.h"
 
-#include <algorithm>
+#include "base/quantile.h"
+
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -94,10 +96,7 @@ double poll_period(const std::vector<Poll>& polls) {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < polls.size(); ++i)
         gaps.push_back(cosim::to_seconds(polls[i].time - polls[i - 1].time));
-    if (gaps.empty()) return 0.0;
-    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-    std::nth_element(gaps.begin(), middle, gaps.end());
-    return *middle;
+    return gaps.empty() ? 0.0 : upper_median(std::move(gaps));
 }
 
 }  // namespace puckloop::tools

@@ -1,5 +1,6 @@
 #include "tools/gap/emulate/reacts.h"
 
+#include "base/quantile.h"
 #include "physics/description/parameters.h"
 #include "protocols/epuck_serial.h"
 #include "tools/gap/emulate/plans.h"
@@ -13,6 +14,7 @@
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 namespace puckloop::gap::emulate {
 
@@ -29,10 +31,7 @@ double median_step(const std::vector<double>& times) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < times.size(); ++i)
         if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
-    if (steps.empty()) return 0.0;
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
-                     steps.end());
-    return steps[steps.size() / 2];
+    return steps.empty() ? 0.0 : upper_median(std::move(steps));
 }
 
 std::string open_floor(double reach) {
