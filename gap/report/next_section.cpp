@@ -1,6 +1,6 @@
 #include "gap/report/sections.h"
 
-#include "physics/render/svg_canvas.h"
+#include "base/svg.h"
 
 #include <fmt/format.h>
 
@@ -106,7 +106,7 @@ std::string next_section(const Verdict& verdict) {
     record_next(verdict, steps);
     std::string out = "<h2>What to do next</h2>\n<ol class=\"next\">\n";
     for (const std::string& step : steps)
-        out += fmt::format("<li>{}</li>\n", physics::escaped(step));
+        out += fmt::format("<li>{}</li>\n", escaped(step));
     return out + "</ol>\n";
 }
 

@@ -1,12 +1,12 @@
 // Posterior-predictive checks: a row of panels for each observable and model.
 
+#include "base/chart.h"
+#include "base/svg.h"
 #include "gap/predictive/main_covariates.h"
-#include "gap/report/chart.h"
 #include "gap/report/pictures.h"
 #include "gap/report/report.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"
-#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 
@@ -85,15 +85,16 @@ double height_of(const PredictiveCheck& check) {
 
 std::string heading(const PredictiveCheck& check, double top) {
     const char* model = check.extended ? "with the named causes" : "the simulator as it is";
-    return fmt::format(
-        "<text x=\"4\" y=\"{0:.0f}\" font-size=\"12\" font-weight=\"bold\">{1}: {2}</text>\n"
-        "<rect x=\"{3:.0f}\" y=\"{4:.0f}\" width=\"14\" height=\"10\" fill=\"{5}\" "
-        "fill-opacity=\"0.3\"/>\n<text x=\"{6:.0f}\" y=\"{0:.0f}\" font-size=\"10\">90 % of {7} "
-        "replicated data sets</text>\n<circle cx=\"{8:.0f}\" cy=\"{9:.0f}\" r=\"2.5\" "
-        "fill=\"{10}\"/>\n<text x=\"{11:.0f}\" y=\"{0:.0f}\" font-size=\"10\">measured</text>\n",
-        top + 16, physics::escaped(check.observable), model, 2 * kWidth - 70, top + 7,
-        check.extended ? kAfter : kBefore, 2 * kWidth - 52, check.replicates, 3 * kWidth - 72, top + 12,
-        kData, 3 * kWidth - 64);
+    return svg_text(4, top + 16, fmt::format("{}: {}", check.observable, model),
+                    "font-size=\"12\" font-weight=\"bold\"") +
+           fmt::format(
+               "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"14\" height=\"10\" fill=\"{}\" "
+               "fill-opacity=\"0.3\"/>\n<circle cx=\"{:.0f}\" cy=\"{:.0f}\" r=\"2.5\" fill=\"{}\"/>\n",
+               2 * kWidth - 70, top + 7, check.extended ? kAfter : kBefore, 3 * kWidth - 72, top + 12,
+               kData) +
+           svg_text(2 * kWidth - 52, top + 16,
+                    fmt::format("90 % of {} replicated data sets", check.replicates), "") +
+           svg_text(3 * kWidth - 64, top + 16, "measured", "");
 }
 
 std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
@@ -102,13 +103,12 @@ std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
     for (const PredictiveCheck* check : checks) {
         body += heading(*check, top);
         for (std::size_t k = 0; k < check->curves.size(); ++k)
-            body += fmt::format("<g transform=\"translate({:.0f},{:.0f})\">{}</g>\n",
-                                kWidth * static_cast<double>(k % kColumns),
-                                top + kHeading + kHeight * static_cast<double>(k / kColumns),
-                                panel(*check, check->curves[k]));
+            body += svg_moved(kWidth * static_cast<double>(k % kColumns),
+                              top + kHeading + kHeight * static_cast<double>(k / kColumns),
+                              panel(*check, check->curves[k]));
         top += height_of(*check);
     }
-    return svg_document(kColumns * kWidth, top, "", body);
+    return svg_document(kColumns * kWidth, top, 10, body);
 }
 
 }  // namespace

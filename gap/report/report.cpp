@@ -1,8 +1,8 @@
 #include "gap/report/report.h"
 
+#include "base/svg.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"
-#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,6 @@
 namespace puckloop::gap::report {
 
 namespace {
-
-using physics::escaped;
 
 constexpr const char* kStyle = R"css(
 @page { size: A4; margin: 15mm; }

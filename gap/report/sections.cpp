@@ -1,8 +1,8 @@
 #include "gap/report/sections.h"
 
+#include "base/svg.h"
 #include "gap/report/pictures.h"
 #include "gap/report/table.h"
-#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,6 @@
 namespace puckloop::gap::report {
 
 namespace {
-
-using physics::escaped;
 
 std::string paragraph(const std::string& text) {
     return text.empty() ? std::string() : fmt::format("<p>{}</p>\n", escaped(text));

@@ -1,11 +1,11 @@
 // Noise floor and structure tests of every observable.
 
+#include "base/svg.h"
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/robust.h"
-#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 
@@ -110,9 +110,8 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
     stats::adjust_together(before);
     stats::adjust_together(after);
     for (std::size_t i = 0; i < verdict.series.size(); ++i)
-        tests +=
-            fmt::format("<h3>{}</h3>\n{}", physics::escaped(plain_observable(verdict.series[i].observable)),
-                        tests_of(before[i], after[i]));
+        tests += fmt::format("<h3>{}</h3>\n{}", escaped(plain_observable(verdict.series[i].observable)),
+                             tests_of(before[i], after[i]));
     return "<h2>Noise floor</h2>\n<p>Standard deviations: of repeats of one stimulus inside a run, of their "
            "means from run to run, and of single rows, from what differs between successive rows of one "
            "sensor or "

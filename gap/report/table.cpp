@@ -1,15 +1,13 @@
 #include "gap/report/table.h"
 
+#include "base/svg.h"
 #include "gap/stats/profile.h"
-#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 namespace puckloop::gap::report {
-
-using physics::escaped;
 
 Table::Table(std::vector<std::string> heads) : heads_(std::move(heads)) {}
 

@@ -1,5 +1,8 @@
 #include "linuxboard/coordinator/gantt.h"
 
+#include "base/chart.h"
+#include "base/svg.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -27,25 +30,6 @@ const char* fill_of(const std::string& activity) {
     for (const Look& look : kLooks)
         if (activity == look.activity) return look.fill;
     return "#ffffff";
-}
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text)
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        default:
-            out += c;
-        }
-    return out;
 }
 
 struct Bar {
@@ -81,14 +65,6 @@ std::map<std::string, Row> rows_of(const std::vector<Event>& events, double end)
     return rows;
 }
 
-/// A round number of seconds, such that about ten of them are `span`.
-double tick_of(double span) {
-    const double decade = std::pow(10, std::floor(std::log10(span / 10)));
-    for (const double factor : {1.0, 2.0, 5.0})
-        if (span / (decade * factor) <= 12) return decade * factor;
-    return decade * 10;
-}
-
 }  // namespace
 
 std::string gantt_svg(const std::vector<Event>& events, const std::string& title) {
@@ -100,24 +76,15 @@ std::string gantt_svg(const std::vector<Event>& events, const std::string& title
     const double foot = height - kBottom;
     const auto x = [&](double time) { return kLeft + time / end * kWidth; };
 
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-        "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
-        "fill=\"#ffffff\"/>\n<text x=\"{2}\" y=\"24\" font-size=\"15\">{3}</text>\n",
-        kLeft + kWidth + 30, height, kLeft, escaped(title));
-    const double tick = tick_of(end);
+    std::string svg = svg_text(kLeft, 24, title, "font-size=\"15\"");
+    const double tick = Scale::covering(0, end, 10).step;
     for (double time = 0; time <= end * (1 + 1e-9); time += tick)
-        svg +=
-            fmt::format("<line x1=\"{0:.2f}\" y1=\"{1}\" x2=\"{0:.2f}\" y2=\"{2}\" stroke=\"#e4e4e4\"/>"
-                        "<text x=\"{0:.2f}\" y=\"{3}\" text-anchor=\"middle\" fill=\"#555\">{4:g}</text>\n",
-                        x(time), kTop - 6, foot, foot + 16, time);
-    svg += fmt::format(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#555\">s since the coordinator began</text>\n",
-        kLeft + kWidth + 20, foot + 40);
+        svg += svg_line(x(time), kTop - 6, x(time), foot, "stroke=\"#e4e4e4\"") +
+               svg_text(x(time), foot + 16, fmt::format("{:g}", time), "text-anchor=\"middle\"");
+    svg += svg_text(kLeft + kWidth + 20, foot + 40, "s since the coordinator began", "text-anchor=\"end\"");
     double y = kTop;
     for (const auto& [name, row] : rows) {
-        svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", kLeft - 8,
-                           y + kBar * 0.7, escaped(name));
+        svg += svg_text(kLeft - 8, y + kBar * 0.7, name, "text-anchor=\"end\"");
         const auto draw = [&](const Bar& bar, double top, double tall, const char* fill) {
             svg += fmt::format("<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\" fill=\"{}\">"
                                "<title>{}: {}, {:.2f} s to {:.2f} s</title></rect>\n",
@@ -127,8 +94,7 @@ std::string gantt_svg(const std::vector<Event>& events, const std::string& title
         for (const Bar& bar : row.states) {
             draw(bar, y, kBar, fill_of(bar.activity));
             if (x(bar.to) - x(bar.from) > kLetter * static_cast<double>(bar.name.size()))
-                svg += fmt::format("<text x=\"{:.2f}\" y=\"{:.1f}\" font-size=\"10\">{}</text>\n",
-                                   x(bar.from) + 3, y + kBar * 0.65, escaped(bar.name));
+                svg += svg_text(x(bar.from) + 3, y + kBar * 0.65, bar.name, "font-size=\"10\"");
         }
         for (const Bar& bar : row.robots)
             draw(bar, y + kBar + 1, kRobot, "#404a80");
@@ -136,15 +102,15 @@ std::string gantt_svg(const std::vector<Event>& events, const std::string& title
     }
     double legend = kLeft;
     const auto entry = [&](const char* fill, const char* name) {
-        svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"14\" height=\"12\" fill=\"{}\"/><text x=\"{}\" "
-                           "y=\"{}\">{}</text>\n",
-                           legend, foot + 30, fill, legend + 20, foot + 40, name);
+        svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"14\" height=\"12\" fill=\"{}\"/>", legend,
+                           foot + 30, fill) +
+               svg_text(legend + 20, foot + 40, name, "");
         legend += 110;
     };
     for (const Look& look : kLooks)
         entry(look.fill, look.activity);
     entry("#404a80", "robot inside");
-    return svg + "</svg>\n";
+    return svg_document(kLeft + kWidth + 30, height, 12, svg);
 }
 
 }  // namespace puckloop::coordinator

@@ -1,5 +1,7 @@
 #include "physics/render/svg_canvas.h"
 
+#include "base/svg.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,39 +62,15 @@ void SvgCanvas::polyline(const std::vector<Point>& list, std::string_view style)
 }
 
 void SvgCanvas::line(Pixel from, Pixel to, std::string_view style) {
-    body_ += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", from.x,
-                         from.y, to.x, to.y, style);
+    body_ += svg_line(from.x, from.y, to.x, to.y, style);
 }
 
 void SvgCanvas::text(Pixel where, std::string_view text, std::string_view style) {
-    body_ +=
-        fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", where.x, where.y, style, escaped(text));
+    body_ += svg_text(where.x, where.y, text, style);
 }
 
 std::string SvgCanvas::document() const {
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-        "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" "
-        "font-size=\"12\" fill=\"#333\">\n<rect width=\"100%\" height=\"100%\" "
-        "fill=\"#ffffff\"/>\n{2}</svg>\n",
-        width_, height_, body_);
-}
-
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
+    return svg_document(width_, height_, 12, body_);
 }
 
 }  // namespace puckloop::physics

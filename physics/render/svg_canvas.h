@@ -42,6 +42,4 @@ class SvgCanvas {
     std::string body_;
 };
 
-std::string escaped(std::string_view text);
-
 }  // namespace puckloop::physics

@@ -1,5 +1,8 @@
 #include "tools/experiments/exchange_times.h"
 
+#include "base/chart.h"
+#include "base/quantile.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +16,7 @@ double ExchangeTimes::failed_percent() const {
 }
 
 double ExchangeTimes::quantile(double share) const {
-    if (totals.empty()) return 0.0;
-    return totals[static_cast<std::size_t>(share * static_cast<double>(totals.size() - 1) + 0.5)];
+    return totals.empty() ? 0.0 : sorted_quantile(totals, share);
 }
 
 void summarise(ExchangeTimes& times) {
@@ -71,49 +73,25 @@ std::string exchange_table(const ExchangeTimes& times, std::string_view name) {
 }
 
 std::string exchange_picture(const ExchangeTimes& times, std::string_view name) {
-    constexpr double kWidth = 640, kHeight = 300, kLeft = 50, kBottom = 250, kTop = 40, kRight = 620;
     constexpr int kLongest = 45;  // s
-    std::vector<double> shares(kLongest, 0.0);
+    constexpr const char *kOurs = "#4878a8", *kPublished = "#b06000";
+    std::vector<double> middle, none(kLongest, 0.0), shares = none;
+    for (int second = 0; second < kLongest; ++second)
+        middle.push_back(second + 0.5);
     for (const double total : times.totals)
         shares[static_cast<std::size_t>(std::clamp(total, 0.0, kLongest - 1.0))] +=
             100.0 / static_cast<double>(times.attempts);
     const double most = std::max(5.0, *std::max_element(shares.begin(), shares.end()));
-    const double line = most > 12 ? 5 : 2;  // between the shares that are named
-    const auto x = [&](double seconds) { return kLeft + (kRight - kLeft) * seconds / kLongest; };
-    const auto y = [&](double share) { return kBottom - (kBottom - kTop) * share / most; };
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-        "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
-        kWidth, kHeight);
-    svg += fmt::format("<rect x=\"{:.1f}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"#f3ddb3\"/>\n",
-                       x(kPublishedMean - kPublishedSd), kTop, x(2 * kPublishedSd) - x(0), kBottom - kTop);
-    for (int second = 0; second < kLongest; ++second)
-        svg += fmt::format(
-            "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#4878a8\"/>\n",
-            x(second) + 0.5, y(shares[static_cast<std::size_t>(second)]), x(1) - x(0) - 1,
-            kBottom - y(shares[static_cast<std::size_t>(second)]));
-    svg += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2}\" stroke=\"#b06000\" "
-                       "stroke-width=\"2\"/>\n",
-                       x(kPublishedMean), kTop, kBottom);
-    svg += fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"black\"/>\n", kLeft, kBottom,
-                       kRight, kBottom);
-    for (int second = 0; second <= kLongest; second += 5)
-        svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", x(second),
-                           kBottom + 16, second);
-    for (double share = 0; share <= most; share += line)
-        svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:g} %</text>\n", kLeft - 6,
-                           y(share) + 4, share);
-    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">duration of an exchange, s</text>\n",
-                       (kLeft + kRight) / 2, kBottom + 36);
-    svg +=
-        fmt::format("<text x=\"{}\" y=\"18\">{}: {} attempts, {:.1f} +- {:.1f} s, {:.1f} % failed</text>\n",
-                    kLeft, name, times.attempts, times.mean, times.sd, times.failed_percent());
-    svg +=
-        fmt::format("<text x=\"{}\" y=\"33\" fill=\"#b06000\">published: {} attempts, {} +- {} s, {:.1f} % "
-                    "failed</text>\n",
-                    kLeft, kPublishedAttempts, kPublishedMean, kPublishedSd,
-                    100.0 * kPublishedNotFound / kPublishedAttempts);
-    return svg + "</svg>\n";
+    Chart chart(fmt::format("{}: {} attempts, {:.1f} +- {:.1f} s, {:.1f} % failed", name, times.attempts,
+                            times.mean, times.sd, times.failed_percent()),
+                "duration of an exchange, s", "share of attempts, %");
+    chart.caption(fmt::format("published: {} attempts, {} +- {} s, {:.1f} % failed", kPublishedAttempts,
+                              kPublishedMean, kPublishedSd, 100.0 * kPublishedNotFound / kPublishedAttempts));
+    chart.band({kPublishedMean - kPublishedSd, kPublishedMean + kPublishedSd}, {0, 0}, {most, most},
+               kPublished);
+    chart.bars(middle, 0.45, none, shares, kOurs);
+    chart.line({kPublishedMean, kPublishedMean}, {0, most}, kPublished, "published mean and deviation");
+    return chart.svg(640, 320);
 }
 
 }  // namespace puckloop::tools

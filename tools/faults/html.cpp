@@ -1,5 +1,6 @@
 #include "tools/faults/html.h"
 
+#include "base/svg.h"
 #include "tools/faults/findings.h"
 #include "tools/faults/table.h"
 
@@ -46,23 +47,6 @@ constexpr Look kLooks[] = {
 const Look& look_of(Outcome outcome) {
     return *std::find_if(std::begin(kLooks), std::end(kLooks),
                          [&](const Look& look) { return look.outcome == outcome; });
-}
-
-std::string escaped(const std::string& text) {
-    std::string html;
-    for (const char letter : text) {
-        if (letter == '<')
-            html += "&lt;";
-        else if (letter == '>')
-            html += "&gt;";
-        else if (letter == '&')
-            html += "&amp;";
-        else if (letter == '"')
-            html += "&quot;";
-        else
-            html += letter;
-    }
-    return html;
 }
 
 /// Of several cases in one cell the worst is shown: crash first, then in the order of precedence.

@@ -1,6 +1,6 @@
 // The report is one whole, self-contained page; charts hold what they are given.
 
-#include "gap/report/chart.h"
+#include "base/chart.h"
 #include "gap/report/report.h"
 #include "gap/report/table.h"
 #include "tests/gap/report/made_verdict.h"
@@ -9,6 +9,7 @@
 
 #include <regex>
 
+using namespace puckloop;
 using namespace puckloop::gap;
 using namespace puckloop::gap::report;
 using Catch::Matchers::Contains;

@@ -1,4 +1,5 @@
-#include "gap/report/chart.h"
+#include "base/chart.h"
+#include "base/svg.h"
 #include "tools/gap/selftest/grammar/curves.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ template <class CurveOf>
 std::string curves(const char* title, const char* axis, const CurveOf& curve_of, bool nulls,
                    double width = kWidth, double height = kHeight) {
     constexpr double kAside = 0.06;
-    report::Chart chart(title, axis, "share rightly called");
+    Chart chart(title, axis, "share rightly called");
     std::vector<std::string> names;
     for (std::size_t c = 0; c < std::size(kShown); ++c) {
         if (kShown[c] == Class::Null && !nulls) continue;
@@ -44,7 +45,7 @@ std::string curves(const char* title, const char* axis, const CurveOf& curve_of,
 }
 
 std::string ranks(const std::vector<Outcome>& cases) {
-    report::Chart chart("ranks of true parameters", "rank in what is said of them", "parameters");
+    Chart chart("ranks of true parameters", "rank in what is said of them", "parameters");
     const auto histogram = rank_histogram(cases);
     double all = 0.0;
     for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
@@ -72,13 +73,10 @@ std::string curves_svg(const std::vector<Outcome>& cases) {
         curves(
             "power, strength 1 and above", "runs", [&](Class of) { return by_runs(cases, of); }, true),
         ranks(cases)};
-    std::string text = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-                                   "viewBox=\"0 0 {0} {1}\">\n",
-                                   3 * kWidth, kHeight);
+    std::string body;
     for (std::size_t k = 0; k < std::size(charts); ++k)
-        text += fmt::format("<g transform=\"translate({},0)\">{}</g>\n", static_cast<double>(k) * kWidth,
-                            charts[k]);
-    return text + "</svg>\n";
+        body += svg_moved(static_cast<double>(k) * kWidth, 0, charts[k]);
+    return svg_document(3 * kWidth, kHeight, 10, body);
 }
 
 }  // namespace puckloop::gap::selftest::grammar

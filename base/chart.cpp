@@ -1,7 +1,7 @@
-#include "gap/report/chart.h"
+#include "base/chart.h"
 
-#include "gap/stats/robust.h"
-#include "physics/render/svg_canvas.h"
+#include "base/quantile.h"
+#include "base/svg.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,29 +9,27 @@
 #include <algorithm>
 #include <cmath>
 
-namespace puckloop::gap::report {
+namespace puckloop {
 
 namespace {
 
 constexpr double kLeft = 58, kRight = 20, kTop = 40, kBottom = 42;  // pixels round the plot
 constexpr std::size_t kMostPoints = 1500;
-constexpr double kLetter = 5.8;  // pixels wide, about
-constexpr double kSmall = 300;   // pixels wide: fewer ticks
+constexpr double kLetter = 5.8;              // pixels wide, about
+constexpr double kLine = 16;                 // pixels of a caption
+constexpr double kSmall = 300, kWide = 600;  // pixels wide: fewer or more ticks
 constexpr const char* kGrid = "#dddddd";
 constexpr const char* kThick = "stroke-width=\"2\"";
 
-using physics::escaped;
-
 std::string text_at(double x, double y, const std::string& text, const char* anchor, const char* more = "") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor,
-                       more, escaped(text));
+    return svg_text(x, y, text, fmt::format("text-anchor=\"{}\" {}", anchor, more));
 }
 
 std::string segment(double x1, double y1, double x2, double y2, const std::string& colour,
                     const char* style) {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" {}/>\n",
-                       x1, y1, x2, y2, colour, style);
+    return svg_line(x1, y1, x2, y2, fmt::format("stroke=\"{}\" {}", colour, style));
 }
+
 std::string dot(double x, double y, const std::string& colour, const char* radius, const char* more = "") {
     return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"{}/>\n", x, y, radius, colour,
                        more);
@@ -101,21 +99,21 @@ Scale Chart::scale_of(bool vertical, int wanted) const {
         if (vertical) values.insert(values.end(), layer.high.begin(), layer.high.end());
     }
     if (!dots.empty()) {
-        const double low = stats::quantile(dots, clip_low_), high = stats::quantile(dots, clip_high_);
+        const double low = quantile(dots, clip_low_), high = quantile(dots, clip_high_);
         const double room = clip_high_ < 1 ? 0.15 * (high - low) : 0.0;
-        values.push_back(std::max(low - room, stats::quantile(dots, 0)));
-        values.push_back(std::min(high + room, stats::quantile(dots, 1)));
+        values.push_back(std::max(low - room, quantile(dots, 0)));
+        values.push_back(std::min(high + room, quantile(dots, 1)));
     }
     if (!vertical && !categories_.empty()) return {-0.5, static_cast<double>(categories_.size()) - 0.5, 1};
-    return Scale::covering(stats::quantile(values, 0), stats::quantile(values, 1), wanted);
+    return Scale::covering(quantile(values, 0), quantile(values, 1), wanted);
 }
 
 std::string Chart::legend(double left, double top) const {
     std::string out;
     double x = left;
     for (const Layer& layer : layers_) {
-        if (layer.name.empty()) continue;
-        if (layer.kind == Layer::Kind::Points)
+        if (layer.name.empty() || layer.kind == Layer::Kind::Text) continue;
+        if (layer.kind == Layer::Kind::Points || layer.kind == Layer::Kind::Dots)
             out += dot(x + 6, top - 4, layer.colour, "3");
         else
             out += segment(x, top - 4, x + 12, top - 4, layer.colour,
@@ -128,13 +126,17 @@ std::string Chart::legend(double left, double top) const {
 
 std::string Chart::svg(double width, double height) const {
     // Labels stay apart in small charts, too.
-    Scale xs = scale_of(false, width < kSmall ? 3 : 4), ys = scale_of(true, width < kSmall ? 4 : 5);
-    const double bottom = height - kBottom, right = width - kRight;
+    Scale xs = scale_of(false, width < kSmall  ? 3
+                               : width < kWide ? 4
+                                               : 9),
+          ys = scale_of(true, width < kSmall ? 4 : 5);
+    const double top = kTop + (caption_.empty() ? 0 : kLine), bottom = height - kBottom,
+                 right = width - kRight;
     // Equal axes: the shorter one is widened about its middle, to whole steps; then both to the same unit.
     for (const bool to_steps : equal_ ? std::vector{true, false} : std::vector<bool>{}) {
         const double unit =
-            std::max((xs.high - xs.low) / (right - kLeft), (ys.high - ys.low) / (bottom - kTop));
-        for (auto [scale, pixels] : {std::pair{&xs, right - kLeft}, {&ys, bottom - kTop}}) {
+            std::max((xs.high - xs.low) / (right - kLeft), (ys.high - ys.low) / (bottom - top));
+        for (auto [scale, pixels] : {std::pair{&xs, right - kLeft}, {&ys, bottom - top}}) {
             const double middle = (scale->low + scale->high) / 2, half = unit * pixels / 2;
             const Scale wide{middle - half, middle + half, scale->step};
             *scale = to_steps ? whole_steps(wide) : wide;
@@ -142,7 +144,7 @@ std::string Chart::svg(double width, double height) const {
     }
     const auto px = [&](double x) { return kLeft + (x - xs.low) / (xs.high - xs.low) * (right - kLeft); };
     const auto py = [&](double y) {
-        return bottom - (std::clamp(y, ys.low, ys.high) - ys.low) / (ys.high - ys.low) * (bottom - kTop);
+        return bottom - (std::clamp(y, ys.low, ys.high) - ys.low) / (ys.high - ys.low) * (bottom - top);
     };
     const auto places = [&](const std::vector<double>& x, const std::vector<double>& y) {
         std::vector<std::string> all;
@@ -159,7 +161,7 @@ std::string Chart::svg(double width, double height) const {
     }
     if (categories_.empty())
         for (const double tick : whole_steps(xs).ticks()) {
-            grid += fmt::format("M{:.1f} {:.1f}V{:.1f}", px(tick), kTop, bottom);
+            grid += fmt::format("M{:.1f} {:.1f}V{:.1f}", px(tick), top, bottom);
             // Long labels stand at every second tick.
             const bool crowded =
                 kLetter * static_cast<double>(xs.label(tick).size() + 1) > px(tick + xs.step) - px(tick);
@@ -203,6 +205,9 @@ std::string Chart::svg(double width, double height) const {
             out += segment(x, py(layer.y[0]), x, py(layer.high[0]), layer.colour, kThick);
             out += dot(x, py(layer.y[1]), layer.colour, "3.5");
         }
+        if (layer.kind == Text)
+            out += text_at(px(layer.x[0]), py(layer.y[0]), layer.name, layer.dashed ? "middle" : "start",
+                           fmt::format("fill=\"{}\"", layer.colour).c_str());
         if (layer.kind == Line)
             out +=
                 fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"{}/>\n",
@@ -217,22 +222,14 @@ std::string Chart::svg(double width, double height) const {
     }
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
                        "stroke=\"#999999\"/>\n",
-                       kLeft, kTop, right - kLeft, bottom - kTop);
+                       kLeft, top, right - kLeft, bottom - top);
     out += text_at(kLeft, 14, title_, "start", "font-size=\"11\" font-weight=\"bold\"");
-    out += legend(kLeft, 32);
+    if (!caption_.empty()) out += text_at(kLeft, 14 + kLine, caption_, "start");
+    out += legend(kLeft, top - 8);
     out += text_at((kLeft + right) / 2, height - 8, x_label_, "middle");
-    out +=
-        text_at(0, 0, y_label_, "middle",
-                fmt::format("transform=\"translate(12,{:.1f}) rotate(-90)\"", (kTop + bottom) / 2).c_str());
-    return svg_document(width, height, " font-size=\"10\"", out);
+    out += text_at(0, 0, y_label_, "middle",
+                   fmt::format("transform=\"translate(12,{:.1f}) rotate(-90)\"", (top + bottom) / 2).c_str());
+    return svg_document(width, height, 10, out);
 }
 
-std::string svg_document(double width, double height, const char* text_style, const std::string& body) {
-    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-                       "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, Helvetica, Arial, "
-                       "sans-serif\"{2} fill=\"#333333\">\n"
-                       "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n{3}</svg>\n",
-                       width, height, text_style, body);
-}
-
-}  // namespace puckloop::gap::report
+}  // namespace puckloop
