@@ -10,8 +10,8 @@
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model_of.h"
 #include "gap/models/rab_ring.h"
-#include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
+#include "physics/ir/published_strengths.h"
 
 #include <algorithm>
 #include <array>
@@ -34,10 +34,12 @@ constexpr double kTurn = 0.6;                        // rad: what a reflection t
 constexpr double kTurned = 0.66, kWholeTurn = 0.76;  // share beyond half a receiver's 30 degrees; its rms
 constexpr std::size_t kLeastPiled = 5;               // equal highest strengths that look like a rail
 
-double between(double RabMeasured::*what, double distance) {
-    const auto to = std::ranges::lower_bound(kRabTable, distance, {}, &RabMeasured::distance);
-    if (to == kRabTable.begin()) return to->*what;
-    if (to == kRabTable.end()) return kRabTable.back().*what;
+using physics::kPublishedStrengths, physics::PublishedStrength;
+
+double between(double PublishedStrength::*what, double distance) {
+    const auto to = std::ranges::lower_bound(kPublishedStrengths, distance, {}, &PublishedStrength::distance);
+    if (to == kPublishedStrengths.begin()) return to->*what;
+    if (to == kPublishedStrengths.end()) return kPublishedStrengths.back().*what;
     const auto from = to - 1;
     const double share = (distance - from->distance) / (to->distance - from->distance);
     return from->*what + share * (to->*what - from->*what);
@@ -139,8 +141,8 @@ class RabModel final : public ModelOf<Numbers> {
                           one.instrument.ceiling > 0 ? std::log(one.instrument.ceiling) : NAN, 0.0};
         one.known_sd = 1.0;
         for (const double distance : distances) {
-            log_median_.push_back(between(&RabMeasured::log_median, distance));
-            spread_.push_back(between(&RabMeasured::spread, distance));
+            log_median_.push_back(between(&PublishedStrength::log_median, distance));
+            spread_.push_back(between(&PublishedStrength::spread, distance));
         }
         if (ring_) {
             spread_ = taken(ring_->strength_sd(), strength_row_);

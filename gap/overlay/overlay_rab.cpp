@@ -5,8 +5,8 @@
 
 #include "gap/overlay/overlay_parts.h"
 
-#include "gap/models/rab_table.h"
 #include "physics/description/parameters.h"
+#include "physics/ir/published_strengths.h"
 
 #include <fmt/format.h>
 
@@ -44,9 +44,10 @@ void rab_overlay(Values& fitted, Values& simulator) {
         if (emitter) simulator[fmt::format("ir.emitter_gain{}", k)] = *emitter;
     }
     if (const auto floor = take(fitted, "rab.far_floor"))
-        for (std::size_t k = 0; k < kRabTable.size(); ++k)
+        for (std::size_t k = 0; k < physics::kPublishedStrengths.size(); ++k)
             simulator[fmt::format("ir.level{}", k)] =
-                drawn.level[k] * std::max(1.0, *floor / (scale * std::exp(kRabTable[k].log_median)));
+                drawn.level[k] *
+                std::max(1.0, *floor / (scale * std::exp(physics::kPublishedStrengths[k].log_median)));
     if (const auto more = take(fitted, "rab.strength_spread")) {
         simulator["ir.frame_noise"] = drawn.frame_noise * (1 + *more);
         simulator["ir.receiver_noise"] = drawn.receiver_noise * (1 + *more);

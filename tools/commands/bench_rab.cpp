@@ -3,6 +3,7 @@
 #include "tools/commands/bench_rab.h"
 #include "base/error.h"
 #include "cosim/interrupt.h"
+#include "physics/ir/published_strengths.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/rab/measure.h"
@@ -62,7 +63,7 @@ std::string readings_csv(const RabMeasured& measured, const std::vector<double>&
 void run(Options& options, int& status) {
     RabMeasurement& what = options.measurement;
     if (options.distances_cm.empty())
-        for (const auto& entry : published_strengths())
+        for (const auto& entry : physics::kPublishedStrengths)
             what.distances.push_back(entry.distance);
     for (const double centimetres : options.distances_cm)
         what.distances.push_back(centimetres / kCentimetres);

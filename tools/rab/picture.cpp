@@ -38,7 +38,7 @@ template <class Scale>
 void add_published(Chart& chart, std::size_t column, double distance, const Scale& scale) {
     const auto p = published_at(distance);
     if (!p) return;
-    const auto at = [&](double z) { return scale(std::exp(p->mu + z * p->sigma)); };
+    const auto at = [&](double z) { return scale(std::exp(p->log_median + z * p->spread)); };
     chart.interval(static_cast<double>(column) + kLeftSide, at(0), at(-kZ90), at(kZ90), kPublished);
 }
 
@@ -67,7 +67,7 @@ std::string strength_panel(const std::vector<RabSummary>& summary) {
     for (const RabSummary& s : summary) {
         most = std::max(most, s.strength.p95);
         if (const auto p = published_at(s.distance))
-            most = std::max(most, std::exp(p->mu + kZ90 * p->sigma));
+            most = std::max(most, std::exp(p->log_median + kZ90 * p->spread));
     }
     Chart chart = panel(summary, "strength", "range register");
     for (std::size_t i = 0; i < summary.size(); ++i) {

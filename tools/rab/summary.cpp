@@ -37,16 +37,8 @@ double root_mean_square(const std::vector<double>& values) {
 
 }  // namespace
 
-const std::vector<PublishedStrength>& published_strengths() {
-    static const std::vector<PublishedStrength> table{
-        {0.00, 7.646890, 0.3570609}, {0.02, 7.596525, 0.3192310}, {0.05, 7.249550, 0.1926492},
-        {0.10, 7.084636, 0.1529397}, {0.15, 6.984497, 0.1092330}, {0.30, 6.917447, 0.1216533},
-        {0.45, 6.823188, 0.1531546}, {0.60, 6.828551, 0.1418425}, {0.80, 6.828551, 0.1418425}};
-    return table;
-}
-
-std::optional<PublishedStrength> published_at(double distance) {
-    for (const auto& entry : published_strengths())
+std::optional<physics::PublishedStrength> published_at(double distance) {
+    for (const auto& entry : physics::kPublishedStrengths)
         if (std::abs(entry.distance - distance) < kSameDistance) return entry;
     return std::nullopt;
 }
@@ -98,7 +90,7 @@ std::string summary_csv(const std::vector<RabSummary>& summary) {
                            s.received, s.late, s.strays, s.strength.median, s.sigma, s.strength.p10,
                            s.strength.p90);
         if (const auto published = published_at(s.distance))
-            csv += fmt::format("{:.0f},{:.3f},", std::exp(published->mu), published->sigma);
+            csv += fmt::format("{:.0f},{:.3f},", std::exp(published->log_median), published->spread);
         else
             csv += ",,";
         const Spread& b = s.bearing_error;
@@ -118,8 +110,8 @@ std::string summary_text(const std::vector<RabSummary>& summary) {
         text += fmt::format(
             "{:>5g} cm {:>5} of {:<4} {:>8.0f} {:>10} {:>9.3f} {:>10} {:>10.1f} deg {:>6.1f} .. {:.1f}\n",
             s.distance * kCentimetres, s.received, s.sent, s.strength.median,
-            published ? fmt::format("{:.0f}", std::exp(published->mu)) : "", s.sigma,
-            published ? fmt::format("{:.3f}", published->sigma) : "", s.bearing_rms, s.bearing_error.p5,
+            published ? fmt::format("{:.0f}", std::exp(published->log_median)) : "", s.sigma,
+            published ? fmt::format("{:.3f}", published->spread) : "", s.bearing_rms, s.bearing_error.p5,
             s.bearing_error.p95);
     }
     return text;

@@ -1,6 +1,7 @@
 #pragma once
 // Readings of emulated boards in figures, distance by distance, beside the published log-normal table.
 
+#include "physics/ir/published_strengths.h"
 #include "tools/rab/stage_node.h"
 
 #include <optional>
@@ -9,15 +10,8 @@
 
 namespace puckloop::tools {
 
-/// IRIDIA's statistics of real boards: logarithm of the range register, normal with this mean and deviation.
-struct PublishedStrength {
-    double distance;  ///< between the bodies, m
-    double mu, sigma;
-};
-/// The nine distances.
-const std::vector<PublishedStrength>& published_strengths();
-/// The entry at `distance`, if the table has it.
-std::optional<PublishedStrength> published_at(double distance);
+/// What was measured at real boards at `distance` (m between the bodies), if the table has it.
+std::optional<physics::PublishedStrength> published_at(double distance);
 
 /// Order statistics of a sample.
 struct Spread {

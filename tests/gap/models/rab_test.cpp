@@ -2,8 +2,8 @@
 // parameter acts by the amount of its equation.
 
 #include "base/random.h"
-#include "gap/models/rab_table.h"
 #include "physics/ir/ir_fate.h"
+#include "physics/ir/published_strengths.h"
 #include "protocols/rab_reading.h"
 #include "tests/gap/models/made_table.h"
 #include "tests/physics/ir_worlds.h"
@@ -45,7 +45,7 @@ Table table() {
     };
     for (std::size_t receiver = 1; receiver <= 12; ++receiver)
         add(0.30, receiver);
-    for (const RabMeasured& one : kRabTable)
+    for (const physics::PublishedStrength& one : physics::kPublishedStrengths)
         add(one.distance, 1);
     return rows;
 }
@@ -91,13 +91,13 @@ TEST_CASE("neutral, the strength is what the default medium gives a board") {
     const Experiment experiment = experiment_of(Kind::Rab, table());
     const auto model = make_model(experiment);
     const Prediction rest = predicted(*model);
-    for (std::size_t k = 0; k < kRabTable.size(); ++k) {
-        CHECK(rest[kStrength].mean[12 + k] == Approx(kRabTable[k].log_median));
-        CHECK(rest[kStrength].factor[12 + k] == Approx(kRabTable[k].spread));
+    for (std::size_t k = 0; k < physics::kPublishedStrengths.size(); ++k) {
+        CHECK(rest[kStrength].mean[12 + k] == Approx(physics::kPublishedStrengths[k].log_median));
+        CHECK(rest[kStrength].factor[12 + k] == Approx(physics::kPublishedStrengths[k].spread));
     }
     // 600 readings: their median's error is 1.7 % at contact and 0.7 % beyond; the medium's own is 1 %.
     for (const std::size_t k : {std::size_t{1}, std::size_t{3}, std::size_t{5}, std::size_t{7}})
-        CHECK(simulated_median(kRabTable[k].distance) ==
+        CHECK(simulated_median(physics::kPublishedStrengths[k].distance) ==
               Approx(std::exp(rest[kStrength].mean[12 + k])).epsilon(0.04));
     for (const double error : rest[kBearing].mean)
         CHECK(error == Approx(0).margin(1e-12));
@@ -135,8 +135,8 @@ TEST_CASE("a rail is looked for only where strengths pile up, and then cuts ther
     CHECK(model->starts("rab.saturation")[0] == Approx(1234.5));
     const Prediction said = predicted(*model, {{"rab.saturation", 1234.5}});
     CHECK(shown(said[kStrength], 12) == Approx(std::log(1234.5)));
-    CHECK(said[kStrength].mean[12] == Approx(kRabTable[0].log_median));
-    CHECK(shown(said[kStrength], 19) == Approx(kRabTable[7].log_median));
+    CHECK(said[kStrength].mean[12] == Approx(physics::kPublishedStrengths[0].log_median));
+    CHECK(shown(said[kStrength], 19) == Approx(physics::kPublishedStrengths[7].log_median));
 }
 
 TEST_CASE("unequal receivers turn bearings as the boards' vector sum does") {
