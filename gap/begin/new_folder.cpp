@@ -1,6 +1,7 @@
 #include "gap/begin/new_folder.h"
 
 #include "base/error.h"
+#include "base/text_file.h"
 #include "gap/data/columns.h"
 #include "gap/data/written.h"
 #include "gap/effects/effect.h"
@@ -121,8 +122,8 @@ void write_new_folder(Kind kind, std::size_t runs, const std::filesystem::path& 
         throw InputError(folder.string(), "", "cannot be made: " + failed.message(),
                          "a folder that can be written");
     for (std::size_t run = 0; run < runs; ++run)
-        write_text(folder / run_file(run), new_csv_header(kind));
-    write_text(folder / "experiment.toml", new_experiment_toml(kind, runs));
+        write_file(folder / run_file(run), new_csv_header(kind));
+    write_file(folder / "experiment.toml", new_experiment_toml(kind, runs));
 }
 
 }  // namespace puckloop::gap

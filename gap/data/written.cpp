@@ -1,24 +1,15 @@
 #include "gap/data/written.h"
 
 #include "base/csv.h"
-#include "base/error.h"
+#include "base/text_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <fstream>
 #include <ranges>
-#include <system_error>
 
 namespace puckloop::gap {
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("{}: cannot be written", file.string()));
-}
 
 namespace {
 
@@ -111,16 +102,14 @@ std::string experiment_toml(const WrittenExperiment& e) {
 }
 
 void write_folder(const WrittenExperiment& experiment, const std::filesystem::path& folder, int digits) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    make_folder(folder);
     for (std::size_t k = 0; k < experiment.runs.size(); ++k) {
         std::vector<CsvColumn> columns;
         for (const WrittenColumn& column : experiment.runs[k].columns)
             columns.push_back({column.name, column.values});
-        write_text(folder / file_of(experiment.runs[k], k), csv_text(columns, digits));
+        write_file(folder / file_of(experiment.runs[k], k), csv_text(columns, digits));
     }
-    write_text(folder / "experiment.toml", experiment_toml(experiment));
+    write_file(folder / "experiment.toml", experiment_toml(experiment));
 }
 
 }  // namespace puckloop::gap

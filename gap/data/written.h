@@ -48,9 +48,6 @@ struct WrittenExperiment {
     std::vector<WrittenRun> runs;
 };
 
-/// RunError where the file cannot be written.
-void write_text(const std::filesystem::path& file, const std::string& text);
-
 std::string experiment_toml(const WrittenExperiment& experiment);
 
 /// Writes experiment.toml and one CSV a run into the folder, which is made; `digits` of every value (0: as

@@ -1,12 +1,11 @@
 #include "physics/render/path_file.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <fstream>
 #include <string_view>
 
@@ -17,20 +16,11 @@ namespace {
 constexpr std::size_t kFields = 5;
 
 bool parse(std::string_view line, std::string& name, PathPoint& point) {
-    std::array<std::string_view, kFields> fields;
-    for (std::size_t i = 0; i < kFields; ++i) {
-        const auto comma = i + 1 < kFields ? line.find(',') : line.size();
-        if (comma == std::string_view::npos) return false;
-        fields[i] = line.substr(0, comma);
-        line.remove_prefix(std::min(comma + 1, line.size()));
-    }
-    const auto number = [](std::string_view text, double& value) {
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-        return result.ec == std::errc() && result.ptr == text.data() + text.size();
-    };
+    const auto fields = csv_cells(line, ',');
+    if (fields.size() != kFields) return false;
     name = fields[1];
-    return number(fields[0], point.seconds) && number(fields[2], point.x) && number(fields[3], point.y) &&
-           number(fields[4], point.heading);
+    return csv_number(fields[0], point.seconds) && csv_number(fields[2], point.x) &&
+           csv_number(fields[3], point.y) && csv_number(fields[4], point.heading);
 }
 
 }  // namespace

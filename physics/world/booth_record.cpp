@@ -1,12 +1,12 @@
 #include "physics/world/booth_record.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <string_view>
 
@@ -27,23 +27,14 @@ std::string header() {
 }
 
 bool parse(std::string_view line, std::string& name, BoothColour& colour) {
-    std::array<std::string_view, kFields> fields;
-    for (std::size_t i = 0; i < kFields; ++i) {
-        const auto comma = i + 1 < kFields ? line.find(',') : line.size();
-        if (comma == std::string_view::npos) return false;
-        fields[i] = line.substr(0, comma);
-        line.remove_prefix(std::min(comma + 1, line.size()));
-    }
-    const auto number = [](std::string_view text, double& value) {
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-        return result.ec == std::errc() && result.ptr == text.data() + text.size();
-    };
+    const auto fields = csv_cells(line, ',');
+    if (fields.size() != kFields) return false;
     name = fields[1];
-    if (!number(fields[0], colour.seconds)) return false;
+    if (!csv_number(fields[0], colour.seconds)) return false;
     const std::array<double*, 3> brightest{&colour.red, &colour.green, &colour.blue};
     for (std::size_t i = 0; i < kLeds; ++i) {
         double value = 0.0;
-        if (!number(fields[kFirstLed + i], value)) return false;
+        if (!csv_number(fields[kFirstLed + i], value)) return false;
         double& most = *brightest[i % brightest.size()];
         most = std::max(most, value);
     }

@@ -1,21 +1,14 @@
 #include "tools/bench/scenario_file.h"
 
-#include "base/error.h"
-
-#include <fmt/format.h>
-
-#include <fstream>
+#include "base/text_file.h"
 
 namespace puckloop::tools {
 
 std::filesystem::path write_scenario(const std::filesystem::path& folder, const std::string& name,
                                      const std::string& text) {
-    std::filesystem::create_directories(folder);
+    make_folder(folder);
     const std::filesystem::path file = folder / (name + ".toml");
-    std::ofstream out(file);
-    out << text;
-    out.close();
-    if (!out) throw RunError(fmt::format("{}: cannot be written", file.string()));
+    write_file(file, text);
     return file;
 }
 

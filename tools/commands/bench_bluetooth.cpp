@@ -3,6 +3,7 @@
 
 #include "tools/commands/bench_bluetooth.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "emu/bluetooth/exchange.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,20 +56,13 @@ std::string csv(const std::vector<Exchange>& exchanges) {
     return rows;
 }
 
-void save(const std::filesystem::path& file, const std::string& content) {
-    std::ofstream stream(file);
-    stream << content;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("cannot write {}", file.string()));
-}
-
 /// Modules with a host in this program.
 ExchangeTimes by_modules(const Options& options) {
     std::vector<Exchange> exchanges;
     exchanges.reserve(options.exchanges);
     for (unsigned i = 0; i < options.exchanges; ++i)
         exchanges.push_back(bluetooth::exchange({}, options.seed, i));
-    save(options.out / "exchanges.csv", csv(exchanges));
+    write_file(options.out / "exchanges.csv", csv(exchanges));
     return summary_of(exchanges);
 }
 
@@ -77,7 +70,7 @@ ExchangeTimes by_modules(const Options& options) {
 ExchangeTimes by_boards(const Options& options) {
     const auto exchanges =
         exchange_on_boards({options.firmware, options.out / "run", options.exchanges, options.seed});
-    save(options.out / "exchanges.csv", exchanges_csv(exchanges));
+    write_file(options.out / "exchanges.csv", exchanges_csv(exchanges));
     return times_of(exchanges);
 }
 
@@ -92,7 +85,7 @@ void run(const Options& options, int& status) {
                          "a folder for results");
     const ExchangeTimes times = options.boards ? by_boards(options) : by_modules(options);
     const std::string name = options.boards ? options.firmware.filename().string() : "drawn";
-    save(options.out / "exchanges.svg", exchange_picture(times, name));
+    write_file(options.out / "exchanges.svg", exchange_picture(times, name));
     fmt::print("{}{}\n", exchange_table(times, name), (options.out / "exchanges.svg").string());
     status = 0;
 }

@@ -2,6 +2,7 @@
 
 #include "tools/commands/bench_rab.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "cosim/interrupt.h"
 #include "physics/ir/published_strengths.h"
 #include "tools/cli/check.h"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <memory>
 
 namespace puckloop::tools {
@@ -42,13 +42,6 @@ void take_parameters(Options& options) {
             throw InputError("", "--set", fmt::format("'{}' is not an assignment", text), "NAME=NUMBER");
         options.measurement.parameters[text.substr(0, equals)] = value;
     }
-}
-
-void save(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file);
-    stream << text;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("cannot write {}", file.string()));
 }
 
 std::string readings_csv(const RabMeasured& measured, const std::vector<double>& distances) {
@@ -83,12 +76,13 @@ void run(Options& options, int& status) {
         interrupt.flag());
     if (terminal) fmt::print(stderr, "\r     \r");
     const auto summary = summarise(measured.rows, what.distances);
-    save(options.out / "rab_errors.csv", summary_csv(summary));
-    save(options.out / "rab_readings.csv", readings_csv(measured, what.distances));
-    save(options.out / "rab_errors.svg",
-         rab_picture(summary, fmt::format("{}, {} pairs of boards, {} frames a distance, potentiometer {}",
-                                          what.firmware.filename().string(), what.pairs,
-                                          2 * what.pairs * what.repeats, what.power)));
+    write_file(options.out / "rab_errors.csv", summary_csv(summary));
+    write_file(options.out / "rab_readings.csv", readings_csv(measured, what.distances));
+    write_file(
+        options.out / "rab_errors.svg",
+        rab_picture(summary, fmt::format("{}, {} pairs of boards, {} frames a distance, potentiometer {}",
+                                         what.firmware.filename().string(), what.pairs,
+                                         2 * what.pairs * what.repeats, what.power)));
     fmt::print("{}{:.1f} simulated seconds in {:.1f} s; {}\n", summary_text(summary), measured.simulated_s,
                measured.wall_s, options.out.string());
     status = 0;

@@ -2,6 +2,7 @@
 
 #include "tools/commands/bench_sound.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "tools/cli/check.h"
 #include "tools/experiments/ears_radio.h"
 #include "tools/experiments/exchange_boards.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <numbers>
 
@@ -28,13 +28,6 @@ struct Options {
     std::vector<std::string> experiments;
     std::filesystem::path out = "out/sound";
 };
-
-void save(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file);
-    stream << text;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("cannot write {}", file.string()));
-}
 
 bool wanted(const Options& options, const char* name) {
     return options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
@@ -61,13 +54,13 @@ std::string shape_of(const std::vector<std::pair<double, double>>& places) {
 
 void run_ears(const Options& options, const TrialProgress& progress) {
     const Ears ears = ears_and_radio(options.sound, progress);
-    save(options.out / "ears.csv", heard_csv(ears));
+    write_file(options.out / "ears.csv", heard_csv(ears));
     std::vector<std::pair<double, double>> places;
     for (const Heard& one : ears.heard)
         places.emplace_back(one.x, one.y);
     const std::string summary = fmt::format(
         "heard {} times in {} calls (published: 58 on robots, 65 in Webots)", ears.heard.size(), ears.calls);
-    save(options.out / "ears.svg", ears_picture(ears, summary));
+    write_file(options.out / "ears.svg", ears_picture(ears, summary));
     fmt::print("ears and radio, {:g} s: {}; {}\n", options.sound.walk_s, summary, shape_of(places));
 }
 
@@ -75,7 +68,7 @@ void run_radio(const Options& options) {
     SoundOptions sound = options.sound;
     sound.walker = options.radio;
     const EarsRadio ears = ears_with_radio(sound);
-    save(options.out / "radio.csv", ears_radio_csv(ears));
+    write_file(options.out / "radio.csv", ears_radio_csv(ears));
     std::vector<std::pair<double, double>> places;
     std::vector<ReportedExchange> exchanges;
     for (const RadioAttempt& one : ears.attempts) {
@@ -86,8 +79,8 @@ void run_radio(const Options& options) {
     const std::string summary =
         fmt::format("heard {} times in {:.0f} s of walking, {} messages arrived (published: 58, 53)",
                     times.attempts, ears.walked, ears.messages);
-    save(options.out / "radio.svg", ears_radio_picture(ears, summary));
-    save(options.out / "radio_times.svg", exchange_picture(times, sound.walker.filename().string()));
+    write_file(options.out / "radio.svg", ears_radio_picture(ears, summary));
+    write_file(options.out / "radio_times.svg", exchange_picture(times, sound.walker.filename().string()));
     fmt::print("ears and radio by Bluetooth, {:.0f} s with its pauses: {}; {}\n{}", ears.lasted, summary,
                shape_of(places), exchange_table(times, sound.walker.filename().string()));
 }
@@ -114,15 +107,15 @@ void run(Options& options, int& status) {
     };
     if (wanted(options, "distance")) {
         const Readings readings = sound_against_distance(sound, progress);
-        save(options.out / "distance.csv", readings_csv(readings, "distance_m"));
-        save(options.out / "distance.svg", distance_picture(readings, caption(sound)));
+        write_file(options.out / "distance.csv", readings_csv(readings, "distance_m"));
+        write_file(options.out / "distance.svg", distance_picture(readings, caption(sound)));
         fmt::print("sound 1 against distance (mean of three volumes, counts):\n");
         print_bins(readings, 0.025, kMillimetres, "mm");
     }
     if (wanted(options, "calls")) {
         const Readings readings = five_sounds(sound, progress);
-        save(options.out / "calls.csv", readings_csv(readings, "t_s"));
-        save(options.out / "calls.svg", calls_picture(readings, caption(sound)));
+        write_file(options.out / "calls.csv", readings_csv(readings, "t_s"));
+        write_file(options.out / "calls.svg", calls_picture(readings, caption(sound)));
         fmt::print("five sounds in a row, 10 cm apart: {}\n", (options.out / "calls.svg").string());
     }
     if (wanted(options, "ears")) run_ears(options, progress);

@@ -1,6 +1,7 @@
 #include "tools/experiments/trial.h"
 
 #include "base/error.h"
+#include "base/text_file.h"
 #include "tools/run/run_scenario.h"
 
 #include <fmt/format.h>
@@ -14,13 +15,6 @@ namespace puckloop::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-void save(const fs::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("cannot write {}", file.string()));
-}
 
 std::string script(const std::vector<ScriptLine>& commands) {
     std::string text;
@@ -43,7 +37,7 @@ fs::path write_scenario(const TrialSpec& spec) {
         fmt::format("[run]\nduration = \"{} s\"\nseed = {}\n[arena]\nsize = [\"{} m\", \"{} m\"]\n",
                     spec.seconds, spec.seed, spec.arena, spec.arena);
     for (const TrialRobot& robot : spec.robots) {
-        save(spec.folder / (robot.name + ".txt"), script(robot.commands));
+        write_file(spec.folder / (robot.name + ".txt"), script(robot.commands));
         text += fmt::format("[[robot]]\nname = \"{0}\"\nposition = [\"{1:.6f} m\", \"{2:.6f} m\"]\nheading = "
                             "\"{3:.6f} rad\"\n"
                             "[robot.pic]\nfirmware = \"{4}\"\nselector = {5}\n{6} = \"script:{0}.txt\"\n",
@@ -53,7 +47,7 @@ fs::path write_scenario(const TrialSpec& spec) {
             text += fmt::format("[robot.pic.bluetooth]\nnumber = {}\n", robot.bluetooth);
     }
     const fs::path file = spec.folder / "trial.toml";
-    save(file, text);
+    write_file(file, text);
     return file;
 }
 
@@ -112,8 +106,7 @@ physics::PathPoint Trial::at(std::size_t robot, double seconds) const {
 Trial run_trial(const TrialSpec& spec) {
     std::error_code failed;
     fs::remove_all(spec.folder, failed);
-    fs::create_directories(spec.folder, failed);
-    if (failed) throw RunError(fmt::format("cannot make {}: {}", spec.folder.string(), failed.message()));
+    make_folder(spec.folder);
     RunRequest request;
     request.scenario = write_scenario(spec);
     request.out = spec.folder / "results";

@@ -1,6 +1,7 @@
 #include "tools/faults/case_run.h"
 
 #include "base/error.h"
+#include "base/text_file.h"
 #include "scenarios/faults/fault_tables.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/overrides.h"
@@ -133,8 +134,7 @@ void check_faults_of_nodes(const Campaign& campaign,
                            const std::vector<std::pair<nlohmann::json, int>>& faults,
                            const std::filesystem::path& folder) {
     std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    make_folder(folder);
     constexpr std::size_t kAtOnce = 256;
     for (std::size_t from = 0; from < faults.size(); from += kAtOnce) {
         tools::RunRequest request = request_of(campaign);
@@ -164,8 +164,7 @@ void execute(const Campaign& campaign, const Case& one, const std::filesystem::p
              const CaseStart& start) {
     std::error_code error;
     std::filesystem::remove_all(folder, error);
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    make_folder(folder);
     ::setenv("PUCKLOOP_CACHE", start.boots.c_str(), 1);
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0)

@@ -1,6 +1,7 @@
 #include "tools/faults/slurm.h"
 
 #include "base/error.h"
+#include "base/text_file.h"
 
 #include <fmt/format.h>
 
@@ -154,8 +155,7 @@ class Collector {
 void clean(const fs::path& folder) {
     std::error_code error;
     fs::remove_all(folder, error);
-    fs::create_directories(folder, error);
-    if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    make_folder(folder);
 }
 
 /// A word that a shell takes as it is.
@@ -164,13 +164,6 @@ std::string quoted(const std::string& word) {
     for (const char letter : word)
         text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
     return text + "'";
-}
-
-void write_file(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.flush();
-    if (!file) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
 }
 
 void submit(const SlurmOptions& options, const std::vector<Case>& cases, int round) {

@@ -1,5 +1,6 @@
 #include "tools/rab_losses/results.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "cosim/trace/trace_csv.h"
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <set>
 
@@ -21,20 +21,9 @@ constexpr std::string_view kFrameColumns =
 constexpr std::size_t kColumns = 11;
 constexpr double kRounding = 1e-9;  // 0.3 / 0.1 belongs to the class that begins there
 
-std::vector<std::string> cells_of(const std::string& line) {
-    std::vector<std::string> cells(1);
-    for (const char c : line)
-        if (c == ',')
-            cells.emplace_back();
-        else
-            cells.back() += c;
-    return cells;
-}
-
-double number(const std::string& cell, const std::string& file, std::size_t line) {
-    char* end = nullptr;
-    const double value = std::strtod(cell.c_str(), &end);
-    if (cell.empty() || *end != '\0')
+double number(std::string_view cell, const std::string& file, std::size_t line) {
+    double value = 0.0;
+    if (!csv_number(cell, value))
         throw InputError(file, fmt::format("line {}", line), fmt::format("'{}' is no number", cell));
     return value;
 }
@@ -48,7 +37,7 @@ std::vector<HeardFrame> read_frames(const std::filesystem::path& path, double fr
     if (line != kFrameColumns) throw InputError(file, "line 1", "other columns", std::string(kFrameColumns));
     std::vector<HeardFrame> frames;
     for (std::size_t n = 2; std::getline(in, line); ++n) {
-        const auto cells = cells_of(line);
+        const auto cells = csv_cells(line, ',');
         if (cells.size() != kColumns) {
             if (in.eof()) break;  // no newline: the writer was killed in the middle of a line
             throw InputError(file, fmt::format("line {}", n), "wrong number of columns",

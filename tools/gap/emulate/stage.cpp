@@ -1,6 +1,8 @@
 #include "tools/gap/emulate/stage.h"
 
+#include "base/csv.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "gap/data/written.h"
 #include "scenarios/world_tables.h"
 #include "tools/run/run_scenario.h"
@@ -13,7 +15,6 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <sstream>
 
 namespace puckloop::gap::emulate {
 
@@ -86,12 +87,11 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
 /// Cells of a CSV line; empty ones are NaN.
 std::vector<double> cells(const std::string& line) {
     std::vector<double> values;
-    std::istringstream in(line);
-    for (std::string cell; std::getline(in, cell, ',');) {
-        char* end = nullptr;
-        const double value = std::strtod(cell.c_str(), &end);
-        values.push_back(end == cell.c_str() ? std::numeric_limits<double>::quiet_NaN() : value);
-    }
+    for (const auto cell : csv_cells(line, ','))
+        if (double value = 0.0; csv_number(cell, value))
+            values.push_back(value);
+        else
+            values.push_back(std::numeric_limits<double>::quiet_NaN());
     return values;
 }
 
@@ -148,8 +148,8 @@ std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools,
     std::string script;
     for (const auto& c : act.commands)
         script += fmt::format("{} {} {}\n", c.seconds, c.left, c.right);
-    write_text(scratch / "commands.txt", script);
-    write_text(scratch / "scenario.toml", scenario_text(robot, act, tools, seed, scratch));
+    write_file(scratch / "commands.txt", script);
+    write_file(scratch / "scenario.toml", scenario_text(robot, act, tools, seed, scratch));
     tools::RunRequest request;
     request.scenario = scratch / "scenario.toml";
     request.out = scratch / "out";
