@@ -11,26 +11,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <string_view>
 
 namespace puckloop::gap {
 
 namespace {
-
-/// Those that the world, the line or the crystals have under another name.
-// clang-format off
-const std::set<std::string_view> kOthers{
-    "wheel_scale", "wheel_mismatch", "inverse_friction",
-    "command.latency", "command.loss",
-    "ground.forward_error", "ground.left_error", "ground.raised",
-    "rab.strength_gain", "rab.far_floor", "rab.saturation", "rab.strength_spread", "rab.bearing_offset",
-    "rab.emitter_lobe", "rab.receiver_lobe", "rab.random_loss", "rab.beat", "rab.beat_burst", "rab.multipath",
-    "rab.multipath_loss",
-    "timing.truncation", "timing.clock_drift", "timing.truncation_burst", "timing.edge_errors",
-    "timing.i2c_stretch", "timing.batch", "timing.extra_period", "timing.period_jitter",
-};
-// clang-format on
 
 bool in_simulator(std::string_view parameter) {
     int index = -1;
@@ -86,11 +71,28 @@ void ground_board(const Experiment& experiment, Values& fitted, Values& simulato
         move(aside, fmt::format("ground.y{}", i), drawn.y[i]);
 }
 
+/// Moves what a run can have out of `fitted`: the world's parameters into `simulator`, the others into TOML
+/// tables.
+std::string translated(const Experiment& experiment, Values& fitted, Values& simulator) {
+    wheels(experiment, fitted, simulator);
+    rab_overlay(fitted, simulator);
+    ground_board(experiment, fitted, simulator);
+    sensors_overlay(experiment, fitted, simulator);
+    for (const auto& [name, value] : fitted)
+        if (in_simulator(name)) simulator[name] = value;
+    std::erase_if(fitted, [](const auto& one) { return in_simulator(one.first); });
+    if (const auto slip = take(fitted, "inverse_friction"))
+        simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / std::max(*slip, kLeastSlip);
+    return links_overlay(experiment.nominal, fitted);
+}
+
 }  // namespace
 
-bool overlay_takes(std::string_view parameter) {
-    return in_simulator(parameter) || kOthers.contains(parameter) ||
-           parameter.starts_with("rab.receiver_gain") || parameter.starts_with("rab.emitter_gain");
+bool overlay_takes(const std::string& parameter) {
+    // What is cut again is so only where something is cut.
+    Values fitted{{parameter, 0.5}, {"timing.truncation", 0.5}}, simulator;
+    (void)translated({}, fitted, simulator);
+    return !fitted.contains(parameter);
 }
 
 std::optional<double> take(Values& fitted, const std::string& name) {
@@ -107,27 +109,18 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
         for (const FittedParameter& parameter : cause.parameters)
             fitted[parameter.name] = parameter.value;
     }
-    Values simulator, measuring;
-    wheels(experiment, fitted, simulator);
-    rab_overlay(fitted, simulator);
-    ground_board(experiment, fitted, simulator);
-    sensors_overlay(experiment, fitted, simulator);
-    for (const auto& [name, value] : fitted) {
-        if (name == "inverse_friction")
-            simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / std::max(value, kLeastSlip);
-        else
-            (in_simulator(name) ? simulator : measuring)[name] = value;
-    }
+    Values simulator;
+    const std::string tables = translated(experiment, fitted, simulator);
     // What the experiment says of its robot holds for the scenario as well.
     for (const auto& [name, value] : experiment.nominal)
         if (in_simulator(name)) simulator.emplace(name, value);
     text += "\n[parameters]\n";
     for (const auto& [name, value] : simulator)
         text += parameter_line(name, value);
-    text += links_overlay(experiment.nominal, measuring);
-    if (!measuring.empty())
+    text += tables;
+    if (!fitted.empty())
         text += "\n# Of the measuring chain, or without a counterpart in the world model.\n[measurement]\n";
-    for (const auto& [name, value] : measuring)
+    for (const auto& [name, value] : fitted)
         text += fmt::format("\"{}\" = {:.9g}\n", name, value);
     return text;
 }

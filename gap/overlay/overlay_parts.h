@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace puckloop::gap {
 
@@ -19,7 +18,7 @@ std::optional<double> take(Values& fitted, const std::string& name);
 
 /// Does an overlay hand a forward model's parameter on to a run, under [parameters], [uart], [linux] or
 /// [clock]? The others stand under [measurement], which a run passes over.
-bool overlay_takes(std::string_view parameter);
+bool overlay_takes(const std::string& parameter);
 
 /// [uart], [linux] and [clock]. Takes those parameters out of `fitted` that a run has there, told as TOML
 /// tables; `nominal` is what the experiment says of its robot. What would make a frame faster than the
