@@ -3,6 +3,7 @@
 
 #include "gap/data/experiment.h"
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@ struct ColumnInfo {
     bool required;
     double low, high;  ///< plausible values; outside them a unit or a column is wrong
     const char* meaning;
+    double usual_low = 0.0, usual_high = INFINITY;  ///< of its largest sizes; `t_s`: of the step between rows
 };
 
 /// Columns of one kind, its own first, then those common to all kinds.

@@ -56,12 +56,6 @@ void check_proximity(Experiment& experiment) {
     if (std::abs(correlation) < 0.3 && rank_correlation(angles, readings) < -0.85)
         experiment.cautions.emplace_back(
             "readings fall with angle_rad and not with distance_m: are the two columns swapped?");
-    const double furthest = experiment.range("distance_m").high;
-    if (furthest > 1.0)
-        refuse(
-            experiment, experiment.runs.front(),
-            fmt::format("distance_m reaches {:.3g} m, where these sensors see nothing: wrong unit", furthest),
-            "distances below 1 m; say unit = \"cm\" or \"mm\" in [columns]");
 }
 
 /// What the rear axis should feel, from the truth columns; the right axis likewise.

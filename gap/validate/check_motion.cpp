@@ -122,25 +122,14 @@ void add_turns(const Experiment& experiment, const Run& run, Pairs& turns) {
         if (std::abs(one.turned) >= kLeastTurn) turns.add(one.turned, theta[one.last] - theta[one.first]);
 }
 
-void check_heading(const Experiment& experiment, const Run& run, const Pairs& turns, bool counted) {
-    constexpr std::size_t kEnough = 8;
-    constexpr double kDegrees = 10.0, kLeastTurned = 0.25;  // a degree for a radian is 57, a turn 0.16
-    constexpr double kWrap = 2.0;                           // times as far: none, or a heading that wraps
-    if (turns.seen.size() < kEnough) return;
-    std::vector<double> times;
-    Pairs unwrapped;
-    for (std::size_t i = 0; i < turns.seen.size(); ++i) {
-        times.push_back(std::abs(turns.seen[i] / turns.expected[i]));
-        if (times.back() < kWrap) unwrapped.add_both(turns.expected[i], turns.seen[i]);
-    }
-    const double middle = stats::upper_median(times), factor = unwrapped.factor(kClear);
-    const char* ratio = "theta_rad turns {:.3g} times as far as the wheels do";
-    if (middle > kDegrees)
-        refuse(experiment, run, fmt::format(fmt::runtime(ratio), middle) + ": degrees?",
-               "radians, or theta_rad = \"deg\" in [columns]");
-    if (counted && factor < kLeastTurned)  // commands may move nothing
-        refuse(experiment, run, fmt::format(fmt::runtime(ratio), factor) + ": wrong unit, or not the heading",
-               "radians; \"turn\" and \"deg\" are known in [columns]");
+/// Against what the wheels make of it: a degree for a radian is 57, a turn 0.16.
+void check_heading(const Experiment& experiment, const Run& run, double times, bool counted) {
+    constexpr double kDegrees = 10.0, kLeastTurned = 0.25;
+    if (!(times > kDegrees || (counted && times < kLeastTurned))) return;  // commands may move nothing
+    refuse(experiment, run,
+           fmt::format("theta_rad turns {:.3g} times as far as the wheels do: {}", times,
+                       times > kDegrees ? "degrees?" : "wrong unit, or not the heading"),
+           "radians; \"deg\" and \"turn\" are known in [columns]");
 }
 
 /// Where the tracker saw the robot go while its wheels went straight.
@@ -192,10 +181,10 @@ std::string steps_a_second(const Experiment& experiment) {
 
 /// The way that the tracker saw, and the heading, against those that the wheels made or were asked for. A
 /// robot that is held goes together with neither.
-void check_way(Experiment& experiment, bool counted) {
+void check_way(Experiment& experiment, bool counted, const Pairs& turns) {
     constexpr double kAsked = 20;  // wheels need not do what they are asked for
     constexpr std::size_t kEnough = 5;
-    Pairs x, y, both, theta;
+    Pairs x, y, both;
     std::vector<std::string> held;
     std::size_t driven = 0;
     for (const Run& run : experiment.runs) {
@@ -209,7 +198,6 @@ void check_way(Experiment& experiment, bool counted) {
                          ahead = one.way * std::cos(middle), aside = one.way * std::sin(middle);
             x.add_both(ahead, moved("x_m")), both.add_both(ahead, moved("x_m"));
             y.add_both(aside, moved("y_m")), both.add_both(aside, moved("y_m"));
-            theta.add_both(one.turned, turned);
             if (std::abs(one.way) >= kWay)
                 gone.push_back(std::hypot(moved("x_m"), moved("y_m")) / std::abs(one.way));
         }
@@ -235,11 +223,12 @@ void check_way(Experiment& experiment, bool counted) {
     if (!held.empty()) experiment.cautions.push_back(stands);
     const std::size_t before = experiment.cautions.size();
     const char* other = counted ? "what the wheels did" : "cmd_left, cmd_right over t_s";
-    ask_factor(experiment, "x_m", other, x);
-    ask_factor(experiment, "y_m", other, y);
+    ask_factor(experiment, "x_m", other, x.factor());
+    ask_factor(experiment, "y_m", other, y.factor());
     if (!counted && factor > kFar && experiment.cautions.size() == before)
         experiment.caution("{}: are cmd_left, cmd_right in {}?", far, steps_a_second(experiment));
-    if (!(factor < 1 / kFar)) ask_factor(experiment, "theta_rad", other, theta);  // else it is held
+    if (!(factor < 1 / kFar))  // else it is held
+        ask_factor(experiment, "theta_rad", other, std::abs(turns.ratio()));
 }
 
 }  // namespace
@@ -284,12 +273,10 @@ std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, 
 /// Left and right wheel exchanged turn the other way; millimetres taken for metres go a thousand times too
 /// far.
 void check_motion(Experiment& experiment) {
-    double agree = 0.0, turned = 0.0;
     double tracked = 0.0, duration = 0.0;
     bool steps = false, heading_fixed = true;
     const double metre_per_step = metres_per_step(experiment);
-    Pairs counted;
-    Pairs turns;
+    Pairs counted, turns;
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
         tracked += path.length;
@@ -310,16 +297,7 @@ void check_motion(Experiment& experiment) {
             experiment.caution(
                 "{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit", run.file,
                 path.largest_turn);
-        const auto& theta = run.column("theta_rad");
         steps = steps || run.has("steps_left");
-        for (std::size_t i = 1; i < run.rows; ++i) {
-            const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
-            const auto [left, right] = steps_made(run, i);
-            const double asked = right - left;
-            if (std::isnan(turn) || std::isnan(asked)) continue;
-            agree += turn * asked;
-            turned += std::abs(turn * asked);
-        }
     }
     const Run& first = experiment.runs.front();
     if (tracked == 0.0 && heading_fixed)
@@ -332,9 +310,10 @@ void check_motion(Experiment& experiment) {
                         "unit of t_s or cmd_left, cmd_right",
                         factor),
             "seconds and " + steps_a_second(experiment));
-    check_way(experiment, steps);
-    check_heading(experiment, first, turns, false);
-    if (turned > 0 && agree < -0.5 * turned)
+    const double times = turns.ratio();
+    check_way(experiment, steps, turns);
+    check_heading(experiment, first, std::abs(times), false);
+    if (times < 0)
         refuse(experiment, first,
                "the robot turns the other way than its wheels: left and right are swapped, or theta_rad runs "
                "clockwise",
@@ -348,7 +327,7 @@ void check_motion(Experiment& experiment) {
         if (run.has("steps_left")) {
             Pairs of_run;
             add_turns(experiment, run, of_run);
-            check_heading(experiment, run, of_run, true);
+            check_heading(experiment, run, std::abs(of_run.ratio()), true);
             check_direction(experiment, run);
         }
 }

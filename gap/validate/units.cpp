@@ -21,32 +21,6 @@ namespace puckloop::gap {
 
 namespace {
 
-/// What a column's largest size usually is, SI units.
-struct Usual {
-    std::optional<Kind> kind;  ///< nothing: any
-    std::string_view column;
-    double low, high;
-};
-
-/// Range and bearing: heard to 0.8 m, in published sets to 6 m; frames of 4.5 and 9.2 ms. An edge of a
-/// printed floor under a spot of millimetres: up to some 1000 / m. The e-puck drives 0.13 m/s, weighs 0.2 kg
-/// and has one cell of 3.4 to 4.2 V. No angle that matters lies below 1.6 degrees, a whole circle's half
-/// below 3.
-constexpr Usual kUsual[] = {
-    {Kind::Proximity, "distance_m", 2e-4, 1.0},   {Kind::Rab, "distance_m", 0.02, 10.0},
-    {Kind::Rab, "frame_time", 3e-4, 0.1},         {Kind::Rab, "send_period", 1e-3, 100.0},
-    {Kind::Microphone, "distance_m", 0.01, 10.0}, {Kind::Ground, "grey_rate", 1e-3, 3000.0},
-    {Kind::Proximity, "angle_rad", 0.028, 1.6},   {Kind::Microphone, "angle_rad", 0.055, 7.0},
-    {Kind::Motion, "load_kg", 1e-3, 5.0},         {std::nullopt, "battery_v", 1.0, 15.0},
-    {std::nullopt, "speed", 1e-4, 4.0},
-};
-
-const Usual* usual_of(Kind kind, std::string_view column) {
-    const auto* const found = std::ranges::find_if(
-        kUsual, [&](const Usual& one) { return one.kind.value_or(kind) == kind && one.column == column; });
-    return found == std::end(kUsual) ? nullptr : found;
-}
-
 /// Units that are known, but nobody logs robots in.
 bool rare(std::string_view unit) {
     static const std::set<std::string_view> names{"um", "in", "km", "min", "h"};
@@ -94,58 +68,52 @@ std::string files_with(const Experiment& experiment, std::string_view column) {
     return more == 0 ? first : fmt::format("{} and {} more file{}", first, more, more == 1 ? "" : "s");
 }
 
-/// The one rule of all that follows: what a column shows lies outside low to high, and a unit that the column
+/// A column of a product, and its power there.
+struct Factor {
+    std::string column;
+    int power = 1;
+};
+
+/// The one rule of all that follows: what columns show lies outside low to high, and a unit that one of them
 /// was not taken in brings it inside. What no unit puts right is the experiment's own.
-bool ask(Experiment& experiment, std::string_view column, double found, double low, double high,
+void ask(Experiment& experiment, const std::vector<Factor>& factors, double found, double low, double high,
          const std::string& what) {
-    if (!(found < low || found > high)) return false;
-    const auto units = better_units(experiment, *find_column(experiment.kind, column), found, low, high);
-    if (units.empty()) return false;
-    experiment.caution("{}: {}: if the files' numbers are in {}, state {} in [columns]",
-                       files_with(experiment, column), what, units.front(),
-                       unit_line(experiment, column, units.front()));
-    return true;
+    if (!(found < low || found > high)) return;
+    std::vector<std::string> remedies;
+    for (const auto& [column, power] : factors) {
+        const ColumnInfo* info = find_column(experiment.kind, column);
+        if (info == nullptr || !experiment.has(column)) continue;
+        const auto units = power > 0 ? better_units(experiment, *info, found, low, high)
+                                     : better_units(experiment, *info, 1 / found, 1 / high, 1 / low);
+        if (units.empty()) continue;
+        const auto remedy = fmt::format("if the files' numbers are in {}, state {} in [columns]",
+                                        units.front(), unit_line(experiment, column, units.front()));
+        // Of columns at odds the one comes first whose unit somebody stated.
+        remedies.insert(stated_unit(experiment, column).empty() ? remedies.end() : remedies.begin(), remedy);
+    }
+    if (!remedies.empty())
+        experiment.caution("{}: {}: {}", files_with(experiment, factors.front().column), what,
+                           fmt::join(remedies, "; or "));
 }
 
 void check_size(Experiment& experiment, const ColumnInfo& info) {
     constexpr double kNearlyAll = 0.95;  // the rest may be glitches
-    const Usual* usual = usual_of(experiment.kind, info.name);
-    if (usual == nullptr) return;
-    std::vector<double> sizes = pooled(experiment, info.name);
-    std::erase_if(sizes, [](double value) { return value == 0 || std::isnan(value); });
-    for (double& value : sizes)
-        value = std::abs(value);
-    const double large = stats::quantile(sizes, kNearlyAll);
-    ask(experiment, info.name, large, usual->low, usual->high,
-        fmt::format("{} reaches {:.3g}{}, where something from {:g} to {:g} is usual", info.name, large,
-                    unit_suffix(info.unit), usual->low, usual->high));
-}
-
-/// A run is done in one go, on one battery; and messages do not come oftener than they are sent.
-void check_times(Experiment& experiment) {
-    constexpr double kMoment = 0.01, kDay = 86400;  // s
-    constexpr double kMostHeard = 100;              // rows a period: senders times receivers
-    double longest = 0, span = 0, rows = 0;
-    for (const Run& run : experiment.runs) {
-        stats::Range times;
-        times.take(run.column("t_s"));
-        if (times.empty()) continue;
-        longest = std::max(longest, times.high - times.low);
-        span += times.high - times.low, rows += static_cast<double>(run.rows);
-    }
-    if (longest > 0)
-        ask(experiment, "t_s", longest, kMoment, kDay,
-            fmt::format("t_s goes on for {:.3g} s, which is {:.2g} days, in one run", longest,
-                        longest / kDay));
-    const double heard = stats::median(pooled(experiment, "send_period")) * rows / span;
-    if (experiment.has("send_period") && heard > 1)
-        ask(experiment, "send_period", heard, 1 / kMostHeard, kMostHeard,
-            fmt::format("in one send_period {:.3g} messages come by t_s", heard));
+    const bool clock = std::string_view(info.name) == "t_s";
+    std::vector<double> sizes;
+    for (const Run& run : experiment.runs)
+        for (const double value : clock ? stats::steps_of(run.column(info.name)) : run.column(info.name))
+            if (value != 0 && std::isfinite(value)) sizes.push_back(std::abs(value));
+    const double large = clock ? stats::median(sizes) : stats::quantile(sizes, kNearlyAll);
+    ask(experiment, {{info.name}}, large, info.usual_low, info.usual_high,
+        fmt::format("{} {} {:.3g}{}, where something from {:g} to {:g} is usual", info.name,
+                    clock ? "goes on from row to row by" : "reaches", large, unit_suffix(info.unit),
+                    info.usual_low, info.usual_high));
 }
 
 // ---- one column against another
 
-constexpr double kG = 9.80665;  // m/s2
+constexpr double kG = 9.80665;   // m/s2
+constexpr std::size_t kFew = 8;  // rows that show nothing
 
 double at(const Run& run, const char* column, std::size_t row) {
     const auto& values = run.column(column);
@@ -168,7 +136,6 @@ template <class Expected>
 void follow(Experiment& experiment, const char* column, const char* other, const Expected& expected,
             double high = kFar) {
     constexpr double kOfPart = 0.5;  // correlation where the range is less
-    // Of two columns at odds the one is asked whose unit somebody stated.
     if (!experiment.has(column) ||
         (!stated_unit(experiment, other).empty() && stated_unit(experiment, column).empty()))
         return;
@@ -182,7 +149,63 @@ void follow(Experiment& experiment, const char* column, const char* other, const
         const double factor = part.factor(kOfPart);
         if (stats::varies(part.seen) && !(factor < 1 / kFar || factor > high)) return;
     }
-    ask_factor(experiment, column, other, pairs, high);
+    ask_factor(experiment, column, other, pairs.factor(), high);
+}
+
+/// A column half way between a row and the one before, or how much it changes between them.
+struct Term {
+    std::string column;
+    bool step = false;
+};
+
+/// Two products that are one quantity: the left one over the right one lies between low and high.
+struct Law {
+    std::vector<Term> left, right;
+    double low, high;
+};
+
+constexpr double kMostHeard = 100;  // messages a period: senders times receivers
+const Law kLaws[] = {
+    {{{"velocity"}, {"t_s", true}}, {{"distance_m", true}}, 1 / kFar, kFar},
+    {{{"grey_rate"}, {"speed"}, {"t_s", true}}, {{"grey", true}}, 1 / kFar, kFar},
+    {{{"acceleration"}, {"t_s", true}}, {{"speed", true}}, 1 / kFar, kFar},
+    {{{"speed"}}, {{"motor_speed"}}, 1 / kFar, kFar},
+    {{{"t_s", true}}, {{"send_period"}}, 1 / kMostHeard, INFINITY},  // some note one now and then
+    {{{"t_s", true}, {"received"}}, {{"send_period"}, {"received"}}, 0, kMostHeard},
+    {{{"arrival_rate"}, {"send_period"}}, {{"senders"}}, 1 / kMostHeard, kMostHeard},
+};
+
+/// What moves, evenly or not, changes so from row to row; jumps to another place are few or of no rate.
+void check_law(Experiment& experiment, const Law& law) {
+    const double metre = metres_per_step(experiment);
+    const auto product = [&](const std::vector<Term>& terms, const Run& run, std::size_t row) {
+        double all = 1;
+        for (const auto& [column, step] : terms) {
+            const bool wheels = column == "motor_speed" || (column == "speed" && !run.has("speed"));
+            const auto& values = run.column(wheels ? "motor_speed" : column);
+            all *= values.empty() ? NAN
+                   : step         ? values[row] - values[row - 1]
+                                  : (values[row] + values[row - 1]) / 2;
+            if (wheels) all *= metre;
+        }
+        return all;
+    };
+    Pairs pairs;
+    for (const Run& run : experiment.runs)
+        for (std::size_t i = 1; i < run.rows; ++i)
+            pairs.add(product(law.right, run, i), product(law.left, run, i));
+    std::vector<Factor> factors;
+    std::string text[2];
+    for (const auto* side : {&law.left, &law.right})
+        for (const auto& [column, step] : *side) {
+            factors.push_back({column, side == &law.left ? 1 : -1});
+            std::string& words = text[side == &law.left ? 0 : 1];
+            words +=
+                fmt::format("{}{}{}", words.empty() ? "" : " times ", step ? "the step of " : "", column);
+        }
+    const double times = std::abs(pairs.ratio());
+    ask(experiment, factors, times, law.low, law.high,
+        fmt::format("{} is {:.3g} times {}", text[0], times, text[1]));
 }
 
 void check_follows(Experiment& experiment) {
@@ -191,17 +214,19 @@ void check_follows(Experiment& experiment) {
     follow(
         experiment, "distance_m", "reading",
         [](const Run& run, std::size_t i) { return seen_from(at(run, "reading", i)); }, kFurther);
-    follow(experiment, "velocity", "distance_m over t_s", [](const Run& run, std::size_t i) {
-        const auto step = [&](const char* column) { return at(run, column, i) - at(run, column, i - 1); };
-        return i == 0 ? NAN : step("distance_m") / step("t_s");
-    });
+    follow(
+        experiment, "distance_m", "amplitude over level",
+        [](const Run& run, std::size_t i) { return at(run, "amplitude", i) / at(run, "level", i) / 10; },
+        kFurther);
     const char *bearing = "bearing_rad", *truth = "true_bearing_rad";
     follow(experiment, bearing, truth, [&](const Run& run, std::size_t i) { return at(run, truth, i); });
     follow(experiment, truth, bearing, [&](const Run& run, std::size_t i) { return at(run, bearing, i); });
-    follow(experiment, truth, "receiver", [](const Run& run, std::size_t i) {
-        const double receiver = at(run, "receiver", i);  // 1 to 12, 0: not known
-        return receiver > 0 ? std::remainder(receiver - 0.5, 12) * std::numbers::pi / 6 : NAN;
-    });
+    for (const auto& [angle, part] :
+         {std::pair{truth, "receiver"}, std::pair{"sender_bearing_rad", "emitter"}})
+        follow(experiment, angle, part, [&, name = part](const Run& run, std::size_t i) {
+            const double number = at(run, name, i);  // 1 to 12, 0: not known
+            return number > 0 ? std::remainder(number - 0.5, 12) * std::numbers::pi / 6 : NAN;
+        });
     const double gain = experiment.nominal_or("accelerometer.gain", 800);
     const auto felt = [&](const char* cause, const char* axis, const char* beside, double of_a_g) {
         follow(experiment, cause, axis, [&](const Run& run, std::size_t i) {
@@ -218,9 +243,23 @@ void check_follows(Experiment& experiment) {
 }  // namespace
 
 double Pairs::factor(double together) const {
-    constexpr std::size_t kFew = 8;
     if (seen.size() < kFew || !(std::abs(stats::correlation(expected, seen)) >= together)) return NAN;
     return stats::standard_deviation(seen) / stats::standard_deviation(expected);
+}
+
+double Pairs::ratio() const {
+    constexpr double kSame = 0.75;  // share of the rows in which both go the same way
+    std::vector<double> logs;
+    double same = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        if (seen[i] != 0 && expected[i] != 0) {
+            logs.push_back(std::log(std::abs(seen[i] / expected[i])));
+            same += seen[i] * expected[i] > 0 ? 1 : 0;
+        }
+    const auto n = static_cast<double>(logs.size());
+    if (logs.size() < kFew || !(std::abs(2 * same / n - 1) >= 2 * kSame - 1)) return NAN;
+    const bool wide = stats::quantile(logs, 0.75) - stats::quantile(logs, 0.25) > std::log(kFar);
+    return wide ? NAN : std::copysign(std::exp(stats::median(logs)), 2 * same - n);
 }
 
 Pairs Pairs::part(bool large) const {
@@ -231,18 +270,17 @@ Pairs Pairs::part(bool large) const {
     return some;
 }
 
-void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, const Pairs& pairs,
+void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, double factor,
                 double high) {
-    const double factor = pairs.factor();
-    ask(experiment, column, factor, 1 / kFar, high,
+    ask(experiment, {{std::string(column)}}, factor, 1 / kFar, high,
         fmt::format("{} changes {:.3g} times as much as {} lets expect", column, factor, other));
 }
 
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value) {
     constexpr std::size_t kMost = 2;
-    const Usual* usual = usual_of(experiment.kind, info.name);
-    auto units = usual != nullptr ? better_units(experiment, info, std::abs(value), usual->low, usual->high)
-                                  : better_units(experiment, info, value, info.low, info.high);
+    auto units = info.usual_low > 0 && std::string_view(info.name) != "t_s"
+                     ? better_units(experiment, info, std::abs(value), info.usual_low, info.usual_high)
+                     : better_units(experiment, info, value, info.low, info.high);
     std::string lines;
     for (const std::string_view unit : std::span(units).first(std::min(units.size(), kMost)))
         lines += fmt::format("{} numbers in {} need {} in [columns]", lines.empty() ? ";" : ",", unit,
@@ -253,7 +291,8 @@ std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, do
 void check_units(Experiment& experiment) {
     for (const ColumnInfo& info : columns_of(experiment.kind))
         check_size(experiment, info);
-    check_times(experiment);
+    for (const Law& law : kLaws)
+        check_law(experiment, law);
     check_follows(experiment);
 }
 

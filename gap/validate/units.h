@@ -24,6 +24,9 @@ struct Pairs {
     void add_both(double one, double other) { add(one, other), add(-one, -other); }
     /// How many times as much one changes as the other; NaN where they hardly go together.
     double factor(double together = 0.7) const;
+    /// How many times as large one is as the other in the middle row, zeros left out; NaN where they hardly
+    /// go together.
+    double ratio() const;
     /// Only those with the largest of what is seen, or only with the smallest.
     Pairs part(bool large) const;
 };
@@ -31,9 +34,9 @@ struct Pairs {
 /// What to do about an impossible value of this column (SI): "; numbers in mm need ...", or nothing.
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value);
 
-/// A caution where a column changes less than a quarter or more than `high` times as much as expected, and
-/// another unit puts that right.
-void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, const Pairs& pairs,
+/// A caution where a column changes less than a quarter or more than `high` times as much as expected (by
+/// `factor`), and another unit puts that right.
+void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, double factor,
                 double high = kFar);
 
 /// A caution for each column whose values lie far outside what a robot, its sensors and an arena have, or
