@@ -10,7 +10,6 @@ namespace puckloop::gap::stats {
 
 namespace {
 constexpr double kSecondDifference = 6.0;  // variance of y[i-1] - 2 y[i] + y[i+1] of white noise
-constexpr double kSameShare = 1e-9;        // of a covariate's range
 }  // namespace
 
 NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus) {
@@ -51,14 +50,14 @@ double row_to_row(const Series& left, const std::vector<int>& chain) {
     return second.size() < kFewest ? NAN : robust_scale(second) / std::sqrt(kSecondDifference);
 }
 
-std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates) {
+std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates, double same) {
     if (covariates.empty()) return {};
     std::map<std::vector<long long>, int> known;
     std::vector<int> number(covariates.front().size(), -1);
     std::vector<double> lowest, quantum;
     for (const auto& c : covariates) {
         lowest.push_back(quantile(c, 0));
-        quantum.push_back(std::max((quantile(c, 1) - lowest.back()) * kSameShare, 1e-300));
+        quantum.push_back(std::max((quantile(c, 1) - lowest.back()) * same, 1e-300));
     }
     for (std::size_t i = 0; i < number.size(); ++i) {
         std::vector<long long> key;

@@ -20,7 +20,8 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
 /// (sensor, receiver; in the order of rows) follow each other. NaN if short.
 double row_to_row(const Series& left, const std::vector<int>& chain);
 
-/// Equal numbers for rows whose covariates are all equal (within 1e-9 of each one's range).
-std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates);
+/// Equal numbers for rows whose covariates are all equal (within the share `same` of each one's range); -1
+/// where one is not known.
+std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates, double same = 1e-9);
 
 }  // namespace puckloop::gap::stats

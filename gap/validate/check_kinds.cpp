@@ -78,13 +78,11 @@ struct Pace {
 Pace pace(const std::vector<double>& times) {
     std::vector<double> steps = stats::steps_of(times);
     if (steps.size() < kFew) return {};
-    Pace pace{stats::upper_median(steps), 0.0, 0.0, 0.0};
-    for (double& step : steps) {
-        pace.mean += step / static_cast<double>(steps.size());
+    Pace pace{stats::upper_median(steps), stats::mean(steps)};
+    for (double& step : steps)
         step = std::abs(step - pace.median);
-        pace.strayed += step / static_cast<double>(steps.size());
-    }
     pace.scatter = stats::kMadToSigma * stats::upper_median(steps);
+    pace.strayed = stats::mean(steps);
     return pace;
 }
 

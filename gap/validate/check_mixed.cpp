@@ -1,6 +1,7 @@
 #include "gap/validate/checks.h"
 
 #include "gap/data/columns.h"
+#include "gap/stats/noise_floor.h"
 #include "gap/stats/robust.h"
 
 #include <fmt/format.h>
@@ -162,41 +163,20 @@ void check_frames(Experiment& experiment, Run& run) {
 
 // ---- readings at placements
 
-/// What holds a placement: everything given of a row but when it was and what else was read.
-std::vector<std::string> placement_columns(const Experiment& experiment, const Run& run) {
+/// Rows by placement, which everything holds that is given of a row but when it was and what else was read; a
+/// jig's noise counts for nothing.
+std::map<int, std::vector<std::size_t>> placements(const Experiment& experiment, const Run& run) {
+    constexpr double kJig = 1e-3;  // of a column's range
     static const std::set<std::string_view> passing{
         "t_s", "order", "temperature_c", "battery_v", "pair_reading", "neighbour_reading", "ambient_reading"};
-    std::vector<std::string> names;
+    std::vector<std::vector<double>> given;
     for (const ColumnInfo& info : columns_of(experiment.kind))
         if (run.has(info.name) && info.role != Role::Observable && !passing.contains(info.name))
-            names.emplace_back(info.name);
-    return names;
-}
-
-/// Rows by placement; a jig's noise counts for nothing.
-std::map<std::vector<long>, std::vector<std::size_t>> placements(const Experiment& experiment,
-                                                                 const Run& run) {
-    constexpr double kSteps = 1000;  // of a column's range
-    struct Scale {
-        const std::vector<double>* values;
-        double low, step;
-    };
-    std::vector<Scale> scales;
-    for (const std::string& name : placement_columns(experiment, run)) {
-        const auto& values = run.column(name);
-        stats::Range range;
-        range.take(values);
-        if (range.high > range.low) scales.push_back({&values, range.low, (range.high - range.low) / kSteps});
-    }
-    std::map<std::vector<long>, std::vector<std::size_t>> rows;
-    for (std::size_t i = 0; i < run.rows; ++i) {
-        std::vector<long> key;
-        for (const Scale& scale : scales) {
-            const double value = (*scale.values)[i];
-            key.push_back(std::isnan(value) ? -1 : std::lround((value - scale.low) / scale.step));
-        }
-        rows[key].push_back(i);
-    }
+            given.push_back(run.column(info.name));
+    const std::vector<int> number = stats::stimulus_numbers(given, kJig);
+    std::map<int, std::vector<std::size_t>> rows;
+    for (std::size_t i = 0; i < number.size(); ++i)
+        if (number[i] >= 0) rows[number[i]].push_back(i);
     return rows;
 }
 

@@ -223,12 +223,12 @@ void check_way(Experiment& experiment, bool counted, const Pairs& turns) {
     if (!held.empty()) experiment.cautions.push_back(stands);
     const std::size_t before = experiment.cautions.size();
     const char* other = counted ? "what the wheels did" : "cmd_left, cmd_right over t_s";
-    ask_factor(experiment, "x_m", other, x.factor());
-    ask_factor(experiment, "y_m", other, y.factor());
+    ask_factor(experiment, {{"x_m"}}, other, x.factor());
+    ask_factor(experiment, {{"y_m"}}, other, y.factor());
     if (!counted && factor > kFar && experiment.cautions.size() == before)
         experiment.caution("{}: are cmd_left, cmd_right in {}?", far, steps_a_second(experiment));
     if (!(factor < 1 / kFar))  // else it is held
-        ask_factor(experiment, "theta_rad", other, std::abs(turns.ratio()));
+        ask_factor(experiment, {{"theta_rad"}}, other, std::abs(turns.ratio()));
 }
 
 }  // namespace

@@ -68,12 +68,6 @@ std::string files_with(const Experiment& experiment, std::string_view column) {
     return more == 0 ? first : fmt::format("{} and {} more file{}", first, more, more == 1 ? "" : "s");
 }
 
-/// A column of a product, and its power there.
-struct Factor {
-    std::string column;
-    int power = 1;
-};
-
 /// The one rule of all that follows: what columns show lies outside low to high, and a unit that one of them
 /// was not taken in brings it inside. What no unit puts right is the experiment's own.
 void ask(Experiment& experiment, const std::vector<Factor>& factors, double found, double low, double high,
@@ -115,7 +109,7 @@ void check_size(Experiment& experiment, const ColumnInfo& info) {
 constexpr double kG = 9.80665;   // m/s2
 constexpr std::size_t kFew = 8;  // rows that show nothing
 
-double at(const Run& run, const char* column, std::size_t row) {
+double at(const Run& run, std::string_view column, std::size_t row) {
     const auto& values = run.column(column);
     return values.empty() ? NAN : values[row];
 }
@@ -131,14 +125,13 @@ double seen_from(double counts) {
     return distance;
 }
 
-/// A column against what another one, row by row, lets expect of it.
+/// Columns (the first one times or over others) against what another one, row by row, lets expect of the
+/// first.
 template <class Expected>
-void follow(Experiment& experiment, const char* column, const char* other, const Expected& expected,
-            double high = kFar) {
+void follow(Experiment& experiment, const std::vector<Factor>& factors, const char* other,
+            const Expected& expected, double high = kFar) {
     constexpr double kOfPart = 0.5;  // correlation where the range is less
-    if (!experiment.has(column) ||
-        (!stated_unit(experiment, other).empty() && stated_unit(experiment, column).empty()))
-        return;
+    const std::string& column = factors.front().column;
     Pairs pairs;
     for (const Run& run : experiment.runs)
         for (std::size_t i = 0; i < run.rows; ++i)
@@ -149,7 +142,7 @@ void follow(Experiment& experiment, const char* column, const char* other, const
         const double factor = part.factor(kOfPart);
         if (stats::varies(part.seen) && !(factor < 1 / kFar || factor > high)) return;
     }
-    ask_factor(experiment, column, other, pairs.factor(), high);
+    ask_factor(experiment, factors, other, pairs.factor(), high);
 }
 
 /// A column half way between a row and the one before, or how much it changes between them.
@@ -212,24 +205,23 @@ void check_follows(Experiment& experiment) {
     // Robots of the size have sensors that see some six times as far (Thymio).
     constexpr double kFurther = 8.0;
     follow(
-        experiment, "distance_m", "reading",
+        experiment, {{"distance_m"}}, "reading",
         [](const Run& run, std::size_t i) { return seen_from(at(run, "reading", i)); }, kFurther);
     follow(
-        experiment, "distance_m", "amplitude over level",
+        experiment, {{"distance_m"}}, "amplitude over level",
         [](const Run& run, std::size_t i) { return at(run, "amplitude", i) / at(run, "level", i) / 10; },
         kFurther);
-    const char *bearing = "bearing_rad", *truth = "true_bearing_rad";
-    follow(experiment, bearing, truth, [&](const Run& run, std::size_t i) { return at(run, truth, i); });
-    follow(experiment, truth, bearing, [&](const Run& run, std::size_t i) { return at(run, bearing, i); });
-    for (const auto& [angle, part] :
-         {std::pair{truth, "receiver"}, std::pair{"sender_bearing_rad", "emitter"}})
-        follow(experiment, angle, part, [&, name = part](const Run& run, std::size_t i) {
+    const char *truth = "true_bearing_rad", *facing = "sender_bearing_rad";
+    follow(experiment, {{"bearing_rad"}, {truth, -1}}, truth,
+           [&](const Run& run, std::size_t i) { return at(run, truth, i); });
+    for (const auto& [angle, part] : {std::pair{truth, "receiver"}, std::pair{facing, "emitter"}})
+        follow(experiment, {{angle}}, part, [&, name = part](const Run& run, std::size_t i) {
             const double number = at(run, name, i);  // 1 to 12, 0: not known
             return number > 0 ? std::remainder(number - 0.5, 12) * std::numbers::pi / 6 : NAN;
         });
     const double gain = experiment.nominal_or("accelerometer.gain", 800);
     const auto felt = [&](const char* cause, const char* axis, const char* beside, double of_a_g) {
-        follow(experiment, cause, axis, [&](const Run& run, std::size_t i) {
+        follow(experiment, {{cause}}, axis, [&](const Run& run, std::size_t i) {
             const double other = at(run, beside, i);
             return other == 0 || std::isnan(other) ? at(run, axis, i) / gain * of_a_g : NAN;
         });
@@ -270,10 +262,11 @@ Pairs Pairs::part(bool large) const {
     return some;
 }
 
-void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, double factor,
-                double high) {
-    ask(experiment, {{std::string(column)}}, factor, 1 / kFar, high,
-        fmt::format("{} changes {:.3g} times as much as {} lets expect", column, factor, other));
+void ask_factor(Experiment& experiment, const std::vector<Factor>& factors, std::string_view other,
+                double factor, double high) {
+    ask(experiment, factors, factor, 1 / kFar, high,
+        fmt::format("{} changes {:.3g} times as much as {} lets expect", factors.front().column, factor,
+                    other));
 }
 
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value) {

@@ -34,10 +34,16 @@ struct Pairs {
 /// What to do about an impossible value of this column (SI): "; numbers in mm need ...", or nothing.
 std::string unit_remedy(const Experiment& experiment, const ColumnInfo& info, double value);
 
-/// A caution where a column changes less than a quarter or more than `high` times as much as expected (by
-/// `factor`), and another unit puts that right.
-void ask_factor(Experiment& experiment, std::string_view column, std::string_view other, double factor,
-                double high = kFar);
+/// A column of a product, and its power there.
+struct Factor {
+    std::string column;
+    int power = 1;
+};
+
+/// A caution where the first column changes less than a quarter or more than `high` times as much as expected
+/// (by `factor`), and another unit of one of them puts that right.
+void ask_factor(Experiment& experiment, const std::vector<Factor>& factors, std::string_view other,
+                double factor, double high = kFar);
 
 /// A caution for each column whose values lie far outside what a robot, its sensors and an arena have, or
 /// that is at odds with another column of the same experiment, where another unit puts it right.

@@ -220,7 +220,7 @@ TEST_CASE("angles against what else shows them") {
         }
     check_no_unit(bearings);
     CHECK_THAT(cautions_of(with_columns(bearings, "true_bearing_rad = \"deg\"")),
-               Contains("times as much as bearing_rad lets expect") &&
+               Contains("times as much as true_bearing_rad lets expect") &&
                    Contains("state true_bearing_rad = \"rad\" in [columns]"));
     CHECK_THAT(cautions_of(with_columns(clean("accelerometer"), "pitch_rad = \"deg\"")),
                Contains("times as much as ay lets expect") &&
@@ -258,4 +258,70 @@ TEST_CASE("a time in milliseconds or microseconds makes rows of minutes or days"
         CHECK_THAT(cautions_of(scaled(clean("ground"), "t_s", factor)),
                    Contains("t_s goes on from row to row by") &&
                        Contains(fmt::format("state t_s = \"{}\"", unit)));
+}
+
+TEST_CASE("a floor driven over: slopes, speeds and times are held against what the greys do") {
+    // 50 mm/s there and back over waves of 80 mm; every 20th row is somewhere else.
+    const auto waves = [](const char* columns, double of_slope, double of_speed, double of_time) {
+        const std::vector<std::string> names{"t_s", "grey", "grey_rate", "speed", "reading"};
+        return made("ground", names, 160, columns, [=](int i, RandomStream& random) {
+            const double k = 2 * std::numbers::pi / 0.08, x = 0.005 * std::abs(i % 80 - 40) + i / 20 * 0.03,
+                         grey = 0.5 + 0.4 * std::sin(k * x), speed = i % 80 > 40 ? 0.05 : -0.05;
+            return std::vector{0.1 * i * of_time, grey, 0.4 * k * std::cos(k * x) * of_slope,
+                               speed * of_speed, std::round(330 + 620 * grey + 4 * random.normal())};
+        });
+    };
+    check_no_unit(waves("", 1, 1, 1));
+    CHECK_THAT(cautions_of(waves("", 1e-3, 1, 1)),
+               Contains("grey_rate times speed times the step of t_s is 0.00") &&
+                   Contains("times the step of grey") && Contains("state grey_rate = \"1/mm\" in [columns]"));
+    CHECK_THAT(cautions_of(waves("speed = \"cm/s\"", 1, 1, 1)),
+               Contains("state speed = \"m/s\" in [columns]"));
+    CHECK_THAT(cautions_of(waves("", 1, 1, 1000)), Contains("state t_s = \"ms\" in [columns]"));
+}
+
+TEST_CASE("an approach of a stage: distance, velocity and time") {
+    const auto approach = [](const char* columns, double of_velocity, double of_time) {
+        const std::vector<std::string> names{"t_s", "distance_m", "velocity", "reading"};
+        return made("proximity", names, 120, columns, [=](int i, RandomStream& random) {
+            const double far = 0.06 - 0.002 * (i % 25);
+            return std::vector{0.05 * i * of_time, far, -0.04 * of_velocity,
+                               std::round(3700 * std::exp(-far / 0.0125) + 20 + 4 * random.normal())};
+        });
+    };
+    check_no_unit(approach("", 1, 1));
+    CHECK_THAT(cautions_of(approach("velocity = \"cm/s\"", 1, 1)),
+               Contains("velocity times the step of t_s is 0.01 times the step of distance_m") &&
+                   Contains("state velocity = \"m/s\" in [columns]"));
+    CHECK_THAT(cautions_of(approach("", 1, 1000)), Contains("state t_s = \"ms\" in [columns]"));
+}
+
+TEST_CASE("loudspeakers and messages: distances, rates and periods") {
+    const auto sound = [](const char* columns) {
+        return made(
+            "microphone", {"t_s", "distance_m", "amplitude", "level"}, 90, columns,
+            [](int i, RandomStream& random) {
+                const double far = 0.05 * (1 + i % 10);
+                return std::vector{0.1 * i, far * 100, 400.0, std::round(40 / far + 3 * random.normal())};
+            });
+    };
+    check_no_unit(sound("distance_m = \"cm\""));
+    CHECK_THAT(cautions_of(sound("distance_m = \"mm\"")), Contains("state distance_m = \"cm\" in [columns]"));
+    const auto heard = [](const char* columns, double rate, double seconds) {
+        const std::vector<std::string> names{"t_s",      "distance_m",   "senders",    "received",
+                                             "strength", "arrival_rate", "send_period"};
+        return made("rab", names, 90, columns, [=](int i, RandomStream& random) {
+            const double far = 0.1 + 0.6 * random.uniform(), senders = 1 + i / 30;
+            return std::vector{0.1 * i * seconds,
+                               far,
+                               senders,
+                               i % 10 == 3 ? 0.0 : 1.0,
+                               std::round(2000 * std::exp(0.1 * random.normal() - far)),
+                               10 * senders * rate,
+                               0.1};
+        });
+    };
+    check_no_unit(heard("", 1, 1));
+    CHECK_THAT(cautions_of(heard("", 1e-3, 1)), Contains("state arrival_rate = \"kHz\" in [columns]"));
+    CHECK_THAT(cautions_of(heard("", 1, 1000)), Contains("state t_s = \"ms\" in [columns]"));
 }
