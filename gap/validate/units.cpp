@@ -145,60 +145,59 @@ void follow(Experiment& experiment, const std::vector<Factor>& factors, const ch
     ask_factor(experiment, factors, other, pairs.factor(), high);
 }
 
-/// A column half way between a row and the one before, or how much it changes between them.
-struct Term {
-    std::string column;
-    bool step = false;
-};
-
-/// Two products that are one quantity: the left one over the right one lies between low and high.
+/// A quantity from two sides: a product of columns, maybe over time, and another column, or how much it
+/// changes meanwhile. The one over the other lies between low and high.
 struct Law {
-    std::vector<Term> left, right;
+    std::vector<std::string> rate;
+    bool over_time;
+    std::string other;
+    bool changes;
     double low, high;
 };
 
 constexpr double kMostHeard = 100;  // messages a period: senders times receivers
 const Law kLaws[] = {
-    {{{"velocity"}, {"t_s", true}}, {{"distance_m", true}}, 1 / kFar, kFar},
-    {{{"grey_rate"}, {"speed"}, {"t_s", true}}, {{"grey", true}}, 1 / kFar, kFar},
-    {{{"acceleration"}, {"t_s", true}}, {{"speed", true}}, 1 / kFar, kFar},
-    {{{"speed"}}, {{"motor_speed"}}, 1 / kFar, kFar},
-    {{{"t_s", true}}, {{"send_period"}}, 1 / kMostHeard, INFINITY},  // some note one now and then
-    {{{"t_s", true}, {"received"}}, {{"send_period"}, {"received"}}, 0, kMostHeard},
-    {{{"arrival_rate"}, {"send_period"}}, {{"senders"}}, 1 / kMostHeard, kMostHeard},
+    {{"velocity"}, true, "distance_m", true, 1 / kFar, kFar},
+    {{"grey_rate", "speed"}, true, "grey", true, 1 / kFar, kFar},
+    {{"acceleration"}, true, "speed", true, 1 / kFar, kFar},
+    {{"speed"}, false, "motor_speed", false, 1 / kFar, kFar},
+    {{}, true, "send_period", false, 1 / kMostHeard, INFINITY},  // some note a message now and then
+    {{"received"}, true, "send_period", false, 0, kMostHeard},
+    {{"arrival_rate", "send_period"}, false, "senders", false, 1 / kMostHeard, kMostHeard},
 };
 
-/// What moves, evenly or not, changes so from row to row; jumps to another place are few or of no rate.
+/// What moves, evenly or not, changes so from row to row, or over more rows where a clock or a ruler is too
+/// coarse to show it; jumps to another place are few or of no rate.
 void check_law(Experiment& experiment, const Law& law) {
-    const double metre = metres_per_step(experiment);
-    const auto product = [&](const std::vector<Term>& terms, const Run& run, std::size_t row) {
-        double all = 1;
-        for (const auto& [column, step] : terms) {
-            const bool wheels = column == "motor_speed" || (column == "speed" && !run.has("speed"));
-            const auto& values = run.column(wheels ? "motor_speed" : column);
-            all *= values.empty() ? NAN
-                   : step         ? values[row] - values[row - 1]
-                                  : (values[row] + values[row - 1]) / 2;
-            if (wheels) all *= metre;
-        }
-        return all;
+    const auto value = [&](const Run& run, const std::string& column, std::size_t row) {
+        if (column == "motor_speed" || (column == "speed" && !run.has("speed")))
+            return at(run, "motor_speed", row) * metres_per_step(experiment);
+        return at(run, column, row);
     };
     Pairs pairs;
-    for (const Run& run : experiment.runs)
-        for (std::size_t i = 1; i < run.rows; ++i)
-            pairs.add(product(law.right, run, i), product(law.left, run, i));
-    std::vector<Factor> factors;
-    std::string text[2];
-    for (const auto* side : {&law.left, &law.right})
-        for (const auto& [column, step] : *side) {
-            factors.push_back({column, side == &law.left ? 1 : -1});
-            std::string& words = text[side == &law.left ? 0 : 1];
-            words +=
-                fmt::format("{}{}{}", words.empty() ? "" : " times ", step ? "the step of " : "", column);
+    for (const Run& run : experiment.runs) {
+        double left = 0, right = 0;
+        for (std::size_t i = 1; i < run.rows; ++i) {
+            double rate = 1;
+            for (const std::string& column : law.rate)
+                rate *= (value(run, column, i) + value(run, column, i - 1)) / 2;
+            const double now = value(run, law.other, i);
+            left += rate * (law.over_time ? at(run, "t_s", i) - at(run, "t_s", i - 1) : 1);
+            right += law.changes ? now - value(run, law.other, i - 1) : now;
+            pairs.add(right, left);
+            if (rate == 0 || (left != 0 && right != 0)) left = right = 0;
         }
+    }
+    std::vector<Factor> factors;
+    for (const std::string& column : law.rate)
+        factors.push_back({column});
+    if (law.over_time) factors.push_back({"t_s"});
+    factors.push_back({law.other, -1});
     const double times = std::abs(pairs.ratio());
     ask(experiment, factors, times, law.low, law.high,
-        fmt::format("{} is {:.3g} times {}", text[0], times, text[1]));
+        fmt::format("{}{}{} is {:.3g} times {}{}", fmt::join(law.rate, " times "),
+                    law.over_time && !law.rate.empty() ? " over " : "", law.over_time ? "t_s" : "", times,
+                    law.changes ? "the change of " : "", law.other));
 }
 
 void check_follows(Experiment& experiment) {

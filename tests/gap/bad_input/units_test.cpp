@@ -272,9 +272,9 @@ TEST_CASE("a floor driven over: slopes, speeds and times are held against what t
         });
     };
     check_no_unit(waves("", 1, 1, 1));
-    CHECK_THAT(cautions_of(waves("", 1e-3, 1, 1)),
-               Contains("grey_rate times speed times the step of t_s is 0.00") &&
-                   Contains("times the step of grey") && Contains("state grey_rate = \"1/mm\" in [columns]"));
+    CHECK_THAT(cautions_of(waves("", 1e-3, 1, 1)), Contains("grey_rate times speed over t_s is 0.00") &&
+                                                       Contains("times the change of grey") &&
+                                                       Contains("state grey_rate = \"1/mm\" in [columns]"));
     CHECK_THAT(cautions_of(waves("speed = \"cm/s\"", 1, 1, 1)),
                Contains("state speed = \"m/s\" in [columns]"));
     CHECK_THAT(cautions_of(waves("", 1, 1, 1000)), Contains("state t_s = \"ms\" in [columns]"));
@@ -291,7 +291,7 @@ TEST_CASE("an approach of a stage: distance, velocity and time") {
     };
     check_no_unit(approach("", 1, 1));
     CHECK_THAT(cautions_of(approach("velocity = \"cm/s\"", 1, 1)),
-               Contains("velocity times the step of t_s is 0.01 times the step of distance_m") &&
+               Contains("velocity over t_s is 0.01 times the change of distance_m") &&
                    Contains("state velocity = \"m/s\" in [columns]"));
     CHECK_THAT(cautions_of(approach("", 1, 1000)), Contains("state t_s = \"ms\" in [columns]"));
 }
