@@ -46,23 +46,55 @@ Path measure(const Run& run) {
     return path;
 }
 
-/// A counter that wrapped, was reset, or has another unit.
-void check_counter(const Experiment& experiment, const Run& run, const char* name, double metre_per_step) {
-    constexpr double kWrap = 65536, kNearWrap = 0.2;
+/// What a counter did from one row to the next that has it.
+struct Counted {
+    std::size_t last, row;
+    double from, to, span;  // steps, steps, s
+    double far() const { return std::abs(to - from); }
+};
+
+std::vector<Counted> counted_rows(const Run& run, const char* name) {
     const auto &steps = run.column(name), &time = run.column("t_s");
+    std::vector<Counted> rows;
     std::size_t last = run.rows;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         if (std::isnan(steps[i] + time[i])) continue;
-        const double change = last < run.rows ? steps[i] - steps[last] : 0.0,
-                     span = last < run.rows ? std::max(time[i] - time[last], 1e-3) : 1.0;
+        if (last < run.rows)
+            rows.push_back({last, i, steps[last], steps[i], std::max(time[i] - time[last], 1e-3)});
         last = i;
-        if (std::abs(change) * metre_per_step < kFastestWheel * std::max(span, 0.1)) continue;
-        const bool wrapped = std::abs(std::abs(change) - kWrap) < kNearWrap * kWrap;
+    }
+    return rows;
+}
+
+/// A counter that wrapped, was reset, or has another unit. Reset is one that is where it would be had it
+/// begun at 0 in this row, and came there twice as fast as it went in any other row, and than the tracker saw
+/// its wheel go.
+void check_counter(const Experiment& experiment, const Run& run, const char* name) {
+    constexpr double kWrap = 65536, kTwice = 2.0;
+    const double metre = metres_per_step(experiment),
+                 axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
+    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
+    const std::vector<Counted> rows = counted_rows(run, name);
+    double fastest = 0.0;  // steps/s, of rows that leave most of the count
+    for (const Counted& one : rows)
+        if (std::abs(one.to) >= std::abs(one.from) / 2) fastest = std::max(fastest, one.far() / one.span);
+    for (const auto& one : rows) {
+        const auto& [last, row, from, to, span] = one;
+        const double usual = fastest * span + 1, far = one.far(),  // whole steps
+            seen = std::hypot(x[row] - x[last], y[row] - y[last]) +
+                   std::abs(std::remainder(theta[row] - theta[last], 2 * std::numbers::pi)) * axle / 2;
+        const bool reset = std::abs(to) <= usual && far > kTwice * usual && !(kTwice * seen > far * metre);
+        if (!reset && far * metre < kFastestWheel * std::max(span, 0.1)) continue;
+        const bool wrapped = std::abs(far - kWrap) <= usual;
         refuse(experiment, run,
-               fmt::format("{} jumps by {:.6g} steps in {:.3g} s{}", name, change, span,
-                           wrapped ? ": a 16-bit counter that wrapped" : ""),
-               wrapped ? "counters put together over wraps (add 65536)" : "a counter that runs on",
-               static_cast<long>(i));
+               fmt::format("{} jumps by {:.6g} steps in {:.3g} s{}", name, to - from, span,
+                           wrapped ? ": a 16-bit counter that wrapped"
+                           : reset ? ": a counter that was reset, as where a robot starts anew"
+                                   : ""),
+               wrapped ? "counters put together over wraps (add 65536)"
+               : reset ? "what it counted before added from here on, or another run"
+                       : "a counter that runs on",
+               static_cast<long>(row));
     }
 }
 
@@ -275,7 +307,6 @@ std::vector<Stretch> stretches_of(const Experiment& experiment, const Run& run, 
 void check_motion(Experiment& experiment) {
     double tracked = 0.0, duration = 0.0;
     bool steps = false, heading_fixed = true;
-    const double metre_per_step = metres_per_step(experiment);
     Pairs counted, turns;
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
@@ -289,7 +320,7 @@ void check_motion(Experiment& experiment) {
                    "what the wheels did or were told");
         if (run.has("steps_left"))
             for (const char* counter : {"steps_left", "steps_right"})
-                check_counter(experiment, run, counter, metre_per_step);
+                check_counter(experiment, run, counter);
         add_turns(experiment, run, turns);
         check_commands(experiment, run, counted);
         check_holes(experiment, run);

@@ -175,6 +175,21 @@ TEST_CASE("clocks that go back, stand still, wrap or jump") {
     CHECK_THAT(refusal(changed(clean("motion"), "steps_left", wrap)), Contains("16-bit"));
 }
 
+TEST_CASE("a counter that is reset is refused however long a row lasts, one that passes 0 is not") {
+    const double longer = GENERATE(1.0, 2.0, 20.0);
+    Made drive =
+        changed(clean("motion"), "t_s", [&](std::size_t, double t) { return fmt::format("{}", longer * t); });
+    for (const char* command : {"cmd_left", "cmd_right"})
+        drive = changed(drive, command,
+                        [&](std::size_t, double speed) { return fmt::format("{}", speed / longer); });
+    const auto less = [](std::size_t row, double steps) {
+        return [=](std::size_t i, double all) { return fmt::format("{}", i < row ? all : all - steps); };
+    };
+    CHECK_THAT(refusal(changed(drive, "steps_right", less(41, 1400))),
+               Contains("run0.csv: row 42: steps_right") && Contains("was reset"));
+    CHECK(refusal(changed(drive, "steps_right", less(0, 700))) == "");
+}
+
 TEST_CASE("constant columns") {
     const auto always = [](const char* text) {
         return [text](std::size_t, double) { return std::string(text); };
