@@ -5,29 +5,24 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
-#include <string>
 #include <utility>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr double kTakenBack = 0.3;  // of a push, at most, that is left after the next
-constexpr double kByChance = kTakenBack / std::numbers::pi;  // of pushes of one length; of normal ones fewer
-
-/// Successive pushes of a run: in how many pairs is this below 0, as by chance it is in a share `chance`?
-PushPattern below_nothing(const std::vector<Push>& pushes, double all, std::string where, double chance,
-                          double (*of)(const Push&, const Push&)) {
-    unsigned pairs = 0, below = 0;
+/// Successive pushes of a run: how many go against the one before, by a product of both?
+PushPattern against_the_last(const std::vector<Push>& pushes, double all,
+                             double (*product)(const Push&, const Push&)) {
+    unsigned pairs = 0, against = 0;
     for (std::size_t k = 1; k < pushes.size(); ++k) {
-        const double value = of(pushes[k - 1], pushes[k]);
-        if (pushes[k].begins || !std::isfinite(value)) continue;
+        const double sense = product(pushes[k - 1], pushes[k]);
+        if (pushes[k].begins || !std::isfinite(sense)) continue;
         pairs += 1;
-        below += value < 0 ? 1 : 0;
+        against += sense < 0 ? 1 : 0;
     }
-    return {std::move(where), static_cast<double>(below), all, pairs * chance,
-            stats::binomial_tail(pairs, chance, below)};
+    return {"against the push before", static_cast<double>(against), all, pairs / 2.0,
+            stats::binomial_tail(pairs, 0.5, against)};
 }
 
 /// Do these unit vectors keep to a direction (Rayleigh's test: Mardia and Jupp, Directional Statistics,
@@ -71,19 +66,8 @@ std::vector<PushPattern> push_directions(const std::vector<Push>& pushes, double
             way *= way;  // along a line: an angle and its opposite are one
         return ways;
     };
-    const char* against = "against the push before";
-    return {below_nothing(pushes, all, against, 0.5,
-                          [](const Push& a, const Push& b) { return b.x * a.x + b.y * a.y; }),
-            below_nothing(pushes, all, against, 0.5,
-                          [](const Push& a, const Push& b) { return b.turned * a.turned; }),
-            below_nothing(pushes, all, "back to where the push before began", kByChance,
-                          [](const Push& a, const Push& b) {
-                              return std::hypot(a.x + b.x, a.y + b.y) - kTakenBack * std::hypot(a.x, a.y);
-                          }),
-            below_nothing(pushes, all, "back to where the push before began to turn", kByChance,
-                          [](const Push& a, const Push& b) {
-                              return std::abs(a.turned + b.turned) - kTakenBack * std::abs(a.turned);
-                          }),
+    return {against_the_last(pushes, all, [](const Push& a, const Push& b) { return b.x * a.x + b.y * a.y; }),
+            against_the_last(pushes, all, [](const Push& a, const Push& b) { return b.turned * a.turned; }),
             directed(room, all, "towards one side of the room"),
             directed(both_ways(room), all, "along one line of the room"),
             directed(robot, all, "one way as the robot looks"),
