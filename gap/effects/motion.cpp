@@ -65,9 +65,10 @@ std::vector<Effect> motion_effects() {
          "log the step counters beside the commands, or the time a command is sent and one it takes effect",
          {"cmd_left"}},
         // A frame on the way to the robot is dropped; the wheels go on as before.
-        // with probability p a command does nothing
+        // with probability p a command does nothing, after one that did nothing with p + burst (1 - p)
         {"command_loss", 12, "commands get lost and the old one is kept",
-         {{"command.loss", 0.0, 0.5, 0.05, "0..5 %", {0.01, 0.05}}},
+         {{"command.loss", 0.0, 0.5, 0.05, "0..5 %", {0.01, 0.05}},
+          {"command.loss_burst", 0.0, 1.0, 0.4, "bursts", {0.1}}},
          "the overlay's [uart] command_loss", "log sequence numbers at both ends", {"cmd_left"}, Scatter},
         // A tilted floor, a magnet or a cable pulls in a direction fixed in the room.
         // displacement = g t in a fixed direction while driving

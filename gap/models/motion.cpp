@@ -51,9 +51,12 @@ constexpr std::pair<const char*, const char*> kWheelColumns[] = {{"steps_left", 
 struct Numbers : physics::Parameters {
     double agenda = 1.0;  ///< 0: the project's own firmware; read before the fit, as start_loss
     double start_loss = 0.0, scale = 0.0, mismatch = 0.0, friction = 1 / contact.mu, latency = 0.0,
-           drop = 0.0, marker_x = 0.0, marker_y = 0.0, marker_angle = 0.0, delay = 0.0, heading_drift = 0.0,
-           heading_span = std::log(kSpan), heading_doubt = std::log(kDoubt), late_step = kLateStep;
+           drop = 0.0, burst = 0.0, marker_x = 0.0, marker_y = 0.0, marker_angle = 0.0, delay = 0.0,
+           heading_drift = 0.0, heading_span = std::log(kSpan), heading_doubt = std::log(kDoubt),
+           late_step = kLateStep;
 
+    /// Chance to lose a command after a lost one.
+    double again() const { return drop + burst * (1 - drop); }
     /// m of way for a step of the left wheel.
     double metre() const { return 2 * std::numbers::pi * robot.wheel_radius_left / robot.steps_per_turn; }
 };
@@ -290,7 +293,9 @@ class MotionModel final : public ModelOf<Numbers> {
         declare({{&Numbers::friction, "inverse_friction", "1"}});
         simulated("robot.", {"load_creep", "slope_creep", "step_loss_speed", "step_loss_width", "deadband",
                              "backlash"});
-        declare({{&Numbers::latency, "command.latency", "s"}, {&Numbers::drop, "command.loss", "1"}});
+        declare({{&Numbers::latency, "command.latency", "s"},
+                 {&Numbers::drop, "command.loss", "1"},
+                 {&Numbers::burst, "command.loss_burst", "1"}});
         simulated("robot.", {"drift_x", "drift_y"});
         simulated("push.", {"rate", "size", "turn"});
         declare({{&Numbers::marker_x, "tracker.marker_x", "m"},
@@ -388,7 +393,8 @@ class MotionModel final : public ModelOf<Numbers> {
                 out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;
             }
             if (drop > 0)
-                lapses_of_loss(drop, metre, robot.axle_length, path, i, before, now, first + i, out);
+                lapses_of_loss(drop, values.again(), metre, robot.axle_length, path, i, before, now,
+                               first + i, out);
         }
         predict_place(std::exp(values.heading_span), path, steps, first, out);
     }
@@ -431,10 +437,11 @@ class MotionModel final : public ModelOf<Numbers> {
         }
     }
 
-    void lapses_of_loss(double drop, const std::array<double, 2>& metre, double axle, const Path& path,
-                        std::size_t i, double before, double now, std::size_t row, Prediction& out) const {
-        const std::array<Loss, 2> loss{lost(path.wheel[0].jumps, drop, before, now),
-                                       lost(path.wheel[1].jumps, drop, before, now)};
+    void lapses_of_loss(double drop, double again, const std::array<double, 2>& metre, double axle,
+                        const Path& path, std::size_t i, double before, double now, std::size_t row,
+                        Prediction& out) const {
+        const std::array<Loss, 2> loss{lost(path.wheel[0].jumps, drop, again, before, now),
+                                       lost(path.wheel[1].jumps, drop, again, before, now)};
         const double left = std::abs(loss[0].steps) * metre[0], right = std::abs(loss[1].steps) * metre[1];
         const double chance = std::max(loss[0].chance, loss[1].chance);
         for (std::size_t o = 0; o < 3; ++o) {
@@ -480,7 +487,7 @@ class MotionModel final : public ModelOf<Numbers> {
             p.mean[i] = o.y[first] + count;
             if (now.drop <= 0) continue;
             const double before = i == first ? o.time[i] : o.time[i - 1];
-            const Loss loss = lost(commanded.jumps, now.drop, before, o.time[i]);
+            const Loss loss = lost(commanded.jumps, now.drop, now.again(), before, o.time[i]);
             if (loss.chance < kStray) continue;
             p.lapse[i] = loss.chance;
             p.lapse_shift[i] = loss.steps;

@@ -63,12 +63,12 @@ double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse
     return sum;
 }
 
-Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double to) {
+Loss lost(const std::vector<SpeedJump>& jumps, double drop, double again, double from, double to) {
     const auto after = std::ranges::upper_bound(jumps, from + kSameTime, {}, &SpeedJump::time);
     if (after == jumps.begin() || to <= from) return {};
     const SpeedJump& last = *(after - 1);
-    const double again = std::round((from - last.time) / (to - from));
-    const double chance = std::pow(drop, 1 + std::max(again, 0.0));
+    const double rows = std::round((from - last.time) / (to - from));
+    const double chance = drop * std::pow(again, std::max(rows, 0.0));
     if (chance < kLeastChance) return {};
     return {chance, -last.change * (to - from)};
 }

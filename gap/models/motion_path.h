@@ -35,11 +35,11 @@ double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse
 
 /// A lost command leaves the wheel at its old speed until the host says the same again, in the next row: how
 /// likely a row is off by one lost after a change, and by how many steps (more are positive). `drop`: chance
-/// to lose one.
+/// to lose one; `again`: to lose one after a lost one.
 struct Loss {
     double chance = 0.0, steps = 0.0;
 };
-Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double to);
+Loss lost(const std::vector<SpeedJump>& jumps, double drop, double again, double from, double to);
 
 /// The heading that turns a tracker's steps into along and across: neither the tracker's, which is noisy and
 /// makes the sums wander, nor the wheels', which a wrong parameter turns away, but the wheels' carried along

@@ -167,6 +167,49 @@ TEST_CASE("how often a robot is pushed is known as well as so few pushes can say
     }
 }
 
+TEST_CASE("commands lost for three rows on end are as rare as they were", "[gap]") {
+    Experiment experiment;
+    experiment.kind = Kind::Motion;
+    experiment.nominal["inverse_friction"] = 0.0;
+    double lost = 0.0, sent = 0.0;
+    RandomStream random(4, "commands lost in threes");
+    for (int r = 0; r < kToyRuns; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        double way = 0.0, speed = 0.0;
+        int silent = 0;  // rows
+        for (int k = 0; k < 240; ++k) {
+            const double command = k / 8 % 2 == 0 ? kToySpeed : 0.0;
+            if (silent == 0 && random.uniform() < 0.03) silent = 3;
+            sent += 1;
+            if (silent > 0)
+                --silent, lost += 1;
+            else
+                speed = command;
+            run.columns["t_s"].push_back(kToyRow * k);
+            run.columns["cmd_left"].push_back(command);
+            run.columns["cmd_right"].push_back(command);
+            run.columns["x_m"].push_back(way + 1e-3 * random.normal());
+            run.columns["y_m"].push_back(1e-3 * random.normal());
+            run.columns["theta_rad"].push_back(5e-3 * random.normal());
+            way += speed * kToyRow * kToyMetre;
+            ++run.rows;
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    const Study study(experiment, 1);
+    const Fit fit = study.fit_set({candidate(study, "command_loss")}, study.fit_none().fitted.state);
+    const Precision precision = precision_of(study, fit);
+    const auto interval = [&](const char* name) {
+        const auto j = std::ranges::find(fit.freed, *study.model().find(name), &Freed::index);
+        REQUIRE(j != fit.freed.end());
+        return interval_of(study, fit, precision, static_cast<std::size_t>(j - fit.freed.begin()));
+    };
+    CHECK(interval("command.loss").low < lost / sent);
+    CHECK(interval("command.loss").high > lost / sent);
+    CHECK(interval("command.loss_burst").low > 0.1);
+}
+
 TEST_CASE("where pushes turn the robot its way goes on as it was turned: no sum wanders for sure",
           "[gap][pushes]") {
     const Experiment experiment = toy_drives([&](RandomStream& random, int, int k, double) {
