@@ -28,6 +28,7 @@ constexpr std::size_t kCoherent = 500;   // rows that are added up in phase, bef
 constexpr double kSteps = 3.0;           // of frequency, for each that a stretch parts
 constexpr double kBand = 5.0;            // Hz: half of what frames at even times part
 constexpr std::size_t kBandsTried = 24;
+constexpr double kHalfMet = 2 / std::numbers::pi;  // length of the mean of phases spread over half a turn
 constexpr double kClearBeat = 6.0;  // deviations: the best of some thousand frequencies is some 4
 constexpr std::size_t kTried = 6;   // of the bands' batches, by what they leave
 
@@ -193,8 +194,18 @@ double place_batches(const Observable& o, std::size_t from, std::size_t to, doub
 }
 
 void follow_even_frames(std::size_t from, std::size_t to, double batch, double rounding,
-                        const std::vector<double>& ready, Placed& placed) {
-    if (is_fine_batch(batch)) return;
+                        const std::vector<double>& begun, const std::vector<double>& ready, Placed& placed) {
+    if (is_fine_batch(batch)) {
+        std::complex<double> beat;
+        for (std::size_t k = from; k < to; ++k)
+            beat += std::polar(1.0, kTurn * begun[k] / batch);
+        if (std::abs(beat) < kHalfMet * static_cast<double>(to - from)) return;
+        for (std::size_t k = from; k < to; ++k) {
+            placed.mean[k] = ready[k];
+            placed.extra[k] = 0.0;
+        }
+        return;
+    }
     const auto wait = [&](std::size_t k) { return placed.mean[k] - batch * placed.later[k] - ready[k]; };
     for (std::size_t k = from + 1; k < to; ++k)
         if (std::abs(wait(k) - wait(k - 1)) > kClockDoubt + kRoundings * rounding) return;

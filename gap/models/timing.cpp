@@ -2,7 +2,8 @@
 // periods, the host's clock with the robot's and the time on the wire, and whether frames were whole.
 //
 // Deviations: 1. the wire takes ten bit times a byte; gaps between bytes are the firmware's. 2. The clocks'
-// zero is free in each run, and after each pause of the loop.
+// zero is free in each run, and after each pause of the loop. 3. How far arrivals follow what single readings
+// of the robot's clock stray by is each run's own: by 0 (it was misread) to 1 (the loop strays).
 
 #include "gap/clean/quantum.h"
 #include "gap/models/batches.h"
@@ -42,6 +43,7 @@ constexpr double kFewSteps = 4.0;         // between quartiles: beyond, the midd
 constexpr double kNextSteps = 1.5;        // of a clock: between its next step and the one beyond
 constexpr double kWhole = 0.999;
 constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
+constexpr std::size_t kAround = 4;     // rows to either side: what errs by itself is a ninth of their line
 constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
 
 struct Numbers {
@@ -89,6 +91,7 @@ class TimingModel final : public ModelOf<Numbers> {
                 std::max(kShortestBatch, kRoundings * std::hypot(std::min(quantum, rounding_), rounding_));
             quantum = std::hypot(quantum, rounding_);
         }
+        find_strays();
         gather_events(experiment);
         declare_all();
         apply_nominal(experiment);
@@ -307,6 +310,27 @@ class TimingModel final : public ModelOf<Numbers> {
         clock.y = kept;
     }
 
+    /// By how much each reading of the robot's clock lies off a line through those around it.
+    void find_strays() {
+        stray_.assign(robot_.size(), 0.0);
+        for (const auto& [from, to] : stretches_of(observables_.back(), robot_.size()))
+            for (std::size_t i = from; clocks_ && i < to; ++i) {
+                double rows = 0.0, number = 0.0, clock = 0.0, squares = 0.0, product = 0.0;
+                const std::size_t end = std::min(to, i + kAround + 1);
+                for (std::size_t k = std::max(from + kAround, i) - kAround; k < end; ++k) {
+                    if (k == i) continue;
+                    const double n = arrived_[k].number - arrived_[i].number, r = robot_[k] - robot_[i];
+                    rows += 1;
+                    number += n;
+                    clock += r;
+                    squares += n * n;
+                    product += n * r;
+                }
+                const double spread = rows * squares - number * number;
+                if (spread > 0) stray_[i] = (product * number - clock * squares) / spread;
+            }
+    }
+
     void gather_events(const Experiment& experiment) {
         // A lost frame has no arrival.
         const Rows rows(experiment, "", {});
@@ -360,17 +384,36 @@ class TimingModel final : public ModelOf<Numbers> {
         p.extra.assign(now.period_jitter > 0 ? p.mean.size() : 0, now.period_jitter);
     }
 
+    /// What a frame takes after the loop has begun on it.
+    static double handling_of(const Numbers& now, const Frame& one) {
+        return one.wire / (1 + now.baud_error) + now.i2c_stretch * one.reads;
+    }
+
     /// When a frame that is due by `clock` has come over the wire, up to the chain's zero.
     double ready_at(const Numbers& now, double clock, const Frame& one) const {
-        const double longer = clocks_ ? 0.0 : now.extra_period, slower = 1 / (1 + now.baud_error);
-        return clock * (1 + now.clock_drift) + longer * one.number + one.wire * slower +
-               now.i2c_stretch * one.reads;
+        const double longer = clocks_ ? 0.0 : now.extra_period;
+        return clock * (1 + now.clock_drift) + longer * one.number + handling_of(now, one);
     }
 
     std::vector<double> arrivals_ready(const Numbers& now) const {
         std::vector<double> ready(arrivals().y.size());
         for (std::size_t i = 0; i < ready.size(); ++i)
             ready[i] = ready_at(now, robot_[i], arrived_[i]);
+        // What a clock was read late by, or early, is none of the frame's: its run's arrivals do not follow
+        // it (errors in variables: the share that they do not follow is the slope of one's steps on the
+        // other's).
+        const Observable& o = arrivals();
+        for (const auto& [from, to] : stretches_of(o, o.y.size())) {
+            double product = 0.0, squares = 0.0;
+            for (std::size_t k = from + 1; k < to; ++k) {
+                const double stray = stray_[k] - stray_[k - 1];
+                product += stray * (o.y[k] - o.y[k - 1] - ready[k] + ready[k - 1]);
+                squares += stray * stray;
+            }
+            const double misread = squares > 0 ? std::clamp(product / squares, -1.0, 0.0) : 0.0;
+            for (std::size_t k = from; k < to; ++k)
+                ready[k] += misread * stray_[k];
+        }
         return ready;
     }
 
@@ -378,11 +421,14 @@ class TimingModel final : public ModelOf<Numbers> {
         const Observable& o = arrivals();
         const double batch = now.batch;
         const std::vector<double> arrival = arrivals_ready(now);
+        std::vector<double> begun;
+        for (std::size_t k = 0; k < arrival.size(); ++k)
+            begun.push_back(arrival[k] - handling_of(now, arrived_[k]));
         Placed placed{arrival, {}, {}, {}};
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
             if (batch >= shortest_) {
                 place_batches(o, i, end, batch, arrival, placed);
-                follow_even_frames(i, end, batch, rounding_, arrival, placed);
+                follow_even_frames(i, end, batch, rounding_, begun, arrival, placed);
             }
             std::vector<double> left;
             for (std::size_t k = i; k < end; ++k)
@@ -450,6 +496,7 @@ class TimingModel final : public ModelOf<Numbers> {
     double shortest_ = kShortestBatch;       // s: what is shorter is no batch but the clocks' rounding
     std::optional<std::size_t> ok_, shift_;  // of the observables
     std::vector<double> robot_;              // s, the clock by which frames that arrived were due
+    std::vector<double> stray_;              // s, of each row: robot_ less the clock's course near by
     std::vector<double> edges_, ok_load_, load_;
     std::vector<Frame> arrived_;
     std::vector<Frame> frames_;  // all, whole or not; empty where the robot's clock says when each was ready

@@ -144,3 +144,23 @@ TEST_CASE("a frame that waits for more than one batch is of the batch that it ca
     REQUIRE(names == std::vector<std::string>{"batching"});
     CHECK(values.front() == Approx(kBatch).epsilon(1e-4));
 }
+
+TEST_CASE("a clock that is read early or late is no batch, nor is what arrivals owe to a frame's bytes",
+          "[gap][fit]") {
+    const double of_bytes = GENERATE(0.0, 0.0008);  // s, more or less, of every third frame
+    Experiment experiment = late_frames(0.0, [](RandomStream&, double) { return 0.0; });
+    RandomStream random(13, "test/misread");
+    for (Run& run : experiment.runs) {
+        double slow = 0.0;
+        for (std::size_t k = 0; k < run.rows; ++k) {
+            slow = 0.95 * slow + 1e-4 * random.normal();
+            const auto part = random.below(3);
+            run.columns["bytes"].push_back(84 + 20.0 * static_cast<double>(part));
+            run.columns["t_host_s"][k] +=
+                slow + (part == 1 ? of_bytes : 0.0) + run.columns["bytes"][k] / 11520;
+            run.columns["t_robot_s"][k] += 1.5e-4 * random.normal();
+        }
+    }
+    const auto names = found_in(experiment).names;
+    CHECK(std::ranges::find(names, "batching") == names.end());
+}
