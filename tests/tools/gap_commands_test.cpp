@@ -78,6 +78,8 @@ TEST_CASE("gap: options and folders that cannot be used end in one line and stat
     check_refused(floor + " --firmware x.hex", "--out");
     check_refused("gap chek " + desk.at("floor"), "perhaps gap check");
     check_refused("gap new grund " + desk.at("out"), "did you mean \"ground\"?");
+    check_refused("gap selftest --emulator --json", "--json: is for made experiments");
+    check_refused("gap selftest --emulator --ablation", "--ablation: is for cases drawn from the grammar");
     check_refused("gap record motion --sett robot.axle_length=0.05 --out " + desk.at("out"), "perhaps --set");
     check_refused("gap selftest --workers 99999999", "--workers");
     check_refused("gap selftest --cases -1", "--cases");

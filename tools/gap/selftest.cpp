@@ -98,7 +98,21 @@ int secret_test(const Request& request) {
 }
 
 int self_test(const Request& request) {
-    if (request.emulator) return secret_test(request);
+    const std::pair<const char*, bool> drawn[] = {
+        {"--svg", !request.svg.empty()},    {"--full", request.full},
+        {"--class", !request.of.empty()},   {"--pool", !request.pool.empty()},
+        {"--draw-runs", request.draw_runs}, {"--ablation", request.ask_all},
+        {"--power", request.power}};
+    for (const auto& [option, given] : drawn)
+        if (given && !request.grammar)
+            throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
+    if (request.emulator) {
+        const std::pair<const char*, bool> made[] = {
+            {"--grammar", request.grammar}, {"--json", request.json}, {"--cases", request.cases > 0}};
+        for (const auto& [option, given] : made)
+            if (given) throw InputError("", option, "is for made experiments", "no --emulator");
+        return secret_test(request);
+    }
     if (request.closed_loop) throw InputError("", "--closed-loop", "is for --emulator", "--emulator");
     if (request.grammar) {
         if (request.quick) throw InputError("", "--quick", "is not for --grammar", "--cases N");
@@ -116,13 +130,6 @@ int self_test(const Request& request) {
         if (own && !request.keep) std::filesystem::remove_all(scratch);
         return status;
     }
-    const std::pair<const char*, bool> drawn[] = {
-        {"--svg", !request.svg.empty()},    {"--full", request.full},
-        {"--class", !request.of.empty()},   {"--pool", !request.pool.empty()},
-        {"--draw-runs", request.draw_runs}, {"--ablation", request.ask_all},
-        {"--power", request.power}};
-    for (const auto& [option, given] : drawn)
-        if (given) throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
     st::RunOptions options;
     const bool own = request.scratch.empty();
     options.scratch = scratch_of(request);
