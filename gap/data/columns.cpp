@@ -31,9 +31,9 @@ const std::vector<ColumnInfo> kCommon{
     {"unit", "1", Covariate, false, -kAny, kAny, "which robot"},
     {"temperature_c", "degC", Covariate, false, -40, 120, "temperature"},
     {"battery_v", "V", Covariate, false, 0, 30, "battery voltage", 1, 15},
-    {"ambient", "1", Covariate, false, 0, 10, "ambient light: 0 dark, 1 lit room", 0.011, 10},
+    {"ambient", "1", Covariate, false, 0, 10, "ambient light: 0 dark, 1 lit room", 0, 10},
     {"neighbours", "1", Covariate, false, 0, 1000, "other robots that are switched on near by"},
-    {"speed", "m/s", Covariate, false, -10, 10, "forward speed of the robot", 1e-4, 1},
+    {"speed", "m/s", Covariate, false, -10, 10, "forward speed of the robot", 1e-4, 4},
     {"motor_speed", "steps/s", Covariate, false, -5000, 5000, "mean step rate of the two motors"},
 };
 
@@ -60,7 +60,7 @@ const std::vector<ColumnInfo> kMotion{
     {"cmd_left", "steps/s", Stimulus, false, -5000, 5000, "commanded speed in force from this row on"},
     {"cmd_right", "steps/s", Stimulus, false, -5000, 5000, "as cmd_left"},
     {"load_kg", "kg", Covariate, false, 0, 10, "what the robot carries or pushes beyond itself", 1e-3, 5},
-    {"incline_rad", "rad", Covariate, false, -0.5, 0.5, "upward slope of the floor along the heading", 3e-3, 0.5},
+    {"incline_rad", "rad", Covariate, false, -0.5, 0.5, "upward slope of the floor along the heading", 0, 0.5},
 };
 
 const std::vector<ColumnInfo> kRab{

@@ -173,9 +173,9 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
     look.at(by_run(rows, hoped));
     const PushPattern found = look.least();
     if (found.p_value < thresholds::kPushesByChance) return found;
-    // By Markov's inequality it refuses true pushes in one case of twenty at most.
+    // By Markov's inequality it refuses true pushes of such a law in one case of twenty at most.
     const double back = std::exp(-taken_back(experiment, model, state, rows.likely));
-    if (back > thresholds::kFalseAlarm) return std::nullopt;
+    if (!(back <= thresholds::kFalseAlarm)) return std::nullopt;
     return PushPattern{"back to where one before began", seen, seen, 0.0, back};
 }
 

@@ -29,6 +29,7 @@ constexpr double kSteps = 3.0;           // of frequency, for each that a stretc
 constexpr double kBand = 5.0;            // Hz: half of what frames at even times part
 constexpr std::size_t kBandsTried = 24;
 constexpr double kHalfMet = 2 / std::numbers::pi;  // length of the mean of phases spread over half a turn
+constexpr double kSurelyMet = 9.2;  // of phases: as far from even ones as by chance once in 10 000 (Rayleigh)
 constexpr double kClearBeat = 6.0;  // deviations: the best of some thousand frequencies is some 4
 constexpr std::size_t kTried = 6;   // of the bands' batches, by what they leave
 
@@ -199,7 +200,8 @@ void follow_even_frames(std::size_t from, std::size_t to, double batch, double r
         std::complex<double> beat;
         for (std::size_t k = from; k < to; ++k)
             beat += std::polar(1.0, kTurn * begun[k] / batch);
-        if (std::abs(beat) < kHalfMet * static_cast<double>(to - from)) return;
+        const auto rows = static_cast<double>(to - from);
+        if (std::abs(beat) < kHalfMet * rows || std::norm(beat) < kSurelyMet * rows) return;
         for (std::size_t k = from; k < to; ++k) {
             placed.mean[k] = ready[k];
             placed.extra[k] = 0.0;

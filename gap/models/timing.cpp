@@ -43,7 +43,7 @@ constexpr double kFewSteps = 4.0;         // between quartiles: beyond, the midd
 constexpr double kNextSteps = 1.5;        // of a clock: between its next step and the one beyond
 constexpr double kWhole = 0.999;
 constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
-constexpr std::size_t kAround = 4;     // rows to either side: what errs by itself is a ninth of their line
+constexpr std::size_t kAround = 4;     // rows to either side: what errs by itself is no part of their line
 constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
 
 struct Numbers {
@@ -410,7 +410,8 @@ class TimingModel final : public ModelOf<Numbers> {
                 product += stray * (o.y[k] - o.y[k - 1] - ready[k] + ready[k - 1]);
                 squares += stray * stray;
             }
-            const double misread = squares > 0 ? std::clamp(product / squares, -1.0, 0.0) : 0.0;
+            const bool enough = squares > 0 && to - from > 2 * kAround;
+            const double misread = enough ? std::clamp(product / squares, -1.0, 0.0) : 0.0;
             for (std::size_t k = from; k < to; ++k)
                 ready[k] += misread * stray_[k];
         }

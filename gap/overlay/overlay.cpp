@@ -89,8 +89,8 @@ std::string translated(const Experiment& experiment, Values& fitted, Values& sim
 }  // namespace
 
 bool overlay_takes(const std::string& parameter) {
-    // What is cut again is so only where something is cut.
-    Values fitted{{parameter, 0.5}, {"timing.truncation", 0.5}}, simulator;
+    // What is cut or lost again is so only where something is.
+    Values fitted{{parameter, 0.5}, {"timing.truncation", 0.5}, {"command.loss", 0.5}}, simulator;
     (void)translated({}, fitted, simulator);
     return !fitted.contains(parameter);
 }

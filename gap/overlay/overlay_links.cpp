@@ -28,10 +28,17 @@ class LinksOverlay {
         table("uart");
         if (const auto late = more("command.latency", kOwnCommandLatency))
             line("command_delay", fmt::format("\"{:.9g} s\"", *late));
-        // A record is lost with any of its bytes.
-        if (const auto lost = more("command.loss"))
-            share("command_loss", 1 - std::pow(1 - std::min(*lost, 0.999),
+        if (const auto lost = more("command.loss")) {
+            // As many as in the long run, each by itself. A record is lost with any of its bytes.
+            const auto burst = more("command.loss_burst");
+            if (burst)
+                header_ += fmt::format("# {:.3g} of command.loss_burst was found; a run loses as many, not "
+                                       "one after another\n",
+                                       *burst);
+            const double all = *lost / (1 - burst.value_or(0.0) * (1 - *lost));
+            share("command_loss", 1 - std::pow(1 - std::min(all, 0.999),
                                                1 / static_cast<double>(protocols::kEpuckActuatorBytes)));
+        }
         if (const auto burst = fitted_.find("timing.truncation_burst");
             burst != fitted_.end() && burst->second < 0) {
             header_ +=

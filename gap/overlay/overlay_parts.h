@@ -20,7 +20,7 @@ std::optional<double> take(Values& fitted, const std::string& name);
 /// [clock]? The others stand under [measurement], which a run passes over.
 bool overlay_takes(const std::string& parameter);
 
-/// [uart], [linux] and [clock]. Takes those parameters out of `fitted` that a run has there, told as TOML
+/// [uart], [linux] and [clock]. Takes those parameters out of `fitted` that a run has there, written as TOML
 /// tables; `nominal` is what the experiment says of its robot. What would make a frame faster than the
 /// simulator's stays.
 std::string links_overlay(const Values& nominal, Values& fitted);

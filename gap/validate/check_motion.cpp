@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 namespace puckloop::gap {
@@ -71,20 +72,33 @@ std::vector<Counted> counted_rows(const Run& run, const char* name) {
 /// its wheel go.
 void check_counter(const Experiment& experiment, const Run& run, const char* name) {
     constexpr double kWrap = 65536, kTwice = 2.0;
+    constexpr double kAgrees = std::numbers::pi / 8;  // rad; by chance one in eight does
     const double metre = metres_per_step(experiment),
                  axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
     const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
+    const bool left = std::string_view(name) == "steps_left";
+    const auto& other = run.column(left ? "steps_right" : "steps_left");
+    const double sense = left ? 1.0 : -1.0;  // in which this wheel's way is taken from the other's
     const std::vector<Counted> rows = counted_rows(run, name);
     double fastest = 0.0;  // steps/s, of rows that leave most of the count
+    const auto too_far = [&](const Counted& one) {
+        return one.far() * metre >= kFastestWheel * std::max(one.span, 0.1);
+    };
     for (const Counted& one : rows)
-        if (std::abs(one.to) >= std::abs(one.from) / 2) fastest = std::max(fastest, one.far() / one.span);
+        if (std::abs(one.to) >= std::abs(one.from) / 2 && !too_far(one))
+            fastest = std::max(fastest, one.far() / one.span);
     for (const auto& one : rows) {
         const auto& [last, row, from, to, span] = one;
-        const double usual = fastest * span + 1, far = one.far(),  // whole steps
-            seen = std::hypot(x[row] - x[last], y[row] - y[last]) +
-                   std::abs(std::remainder(theta[row] - theta[last], 2 * std::numbers::pi)) * axle / 2;
-        const bool reset = std::abs(to) <= usual && far > kTwice * usual && !(kTwice * seen > far * metre);
-        if (!reset && far * metre < kFastestWheel * std::max(span, 0.1)) continue;
+        // Whole turns may have passed unseen: where the heading agrees with both counters, they did.
+        const double turn = (other[row] - other[last] - (to - from)) * sense * metre / axle,
+                     change = theta[row] - theta[last],
+                     turned = std::abs(std::remainder(change - turn, 2 * std::numbers::pi)) < kAgrees
+                                  ? turn
+                                  : std::remainder(change, 2 * std::numbers::pi),
+                     seen = std::hypot(x[row] - x[last], y[row] - y[last]) + std::abs(turned) * axle / 2;
+        const double usual = fastest * span + 1, far = one.far();  // whole steps
+        const bool reset = std::abs(to) <= usual && far > kTwice * usual && kTwice * seen <= far * metre;
+        if (!reset && !too_far(one)) continue;
         const bool wrapped = std::abs(far - kWrap) <= usual;
         refuse(experiment, run,
                fmt::format("{} jumps by {:.6g} steps in {:.3g} s{}", name, to - from, span,
@@ -150,8 +164,14 @@ void check_commands(const Experiment& experiment, const Run& run, Pairs& all) {
 void add_turns(const Experiment& experiment, const Run& run, Pairs& turns) {
     constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad
     const auto& theta = run.column("theta_rad");
-    for (const Stretch& one : stretches_of(experiment, run, kLeastWay, kLeastTurn))
-        if (std::abs(one.turned) >= kLeastTurn) turns.add(one.turned, theta[one.last] - theta[one.first]);
+    double turned = 0.0, seen = 0.0;
+    for (const Stretch& one : stretches_of(experiment, run, kLeastWay, kLeastTurn)) {
+        turned += one.turned;
+        seen += theta[one.last] - theta[one.first];
+        if (std::abs(turned) < kLeastTurn || seen == 0.0) continue;  // or a step of the heading is to come
+        turns.add(turned, seen);
+        turned = seen = 0.0;
+    }
 }
 
 /// Against what the wheels make of it: a degree for a radian is 57, a turn 0.16.

@@ -162,7 +162,6 @@ const Law kLaws[] = {
     {{"acceleration"}, true, "speed", true, 1 / kFar, kFar},
     {{"speed"}, false, "motor_speed", false, 1 / kFar, kFar},
     {{}, true, "send_period", false, 1 / kMostHeard, INFINITY},  // some note a message now and then
-    {{"received"}, true, "send_period", false, 0, kMostHeard},
     {{"arrival_rate", "send_period"}, false, "senders", false, 1 / kMostHeard, kMostHeard},
 };
 
@@ -206,10 +205,6 @@ void check_follows(Experiment& experiment) {
     follow(
         experiment, {{"distance_m"}}, "reading",
         [](const Run& run, std::size_t i) { return seen_from(at(run, "reading", i)); }, kFurther);
-    follow(
-        experiment, {{"distance_m"}}, "amplitude over level",
-        [](const Run& run, std::size_t i) { return at(run, "amplitude", i) / at(run, "level", i) / 10; },
-        kFurther);
     const char *truth = "true_bearing_rad", *facing = "sender_bearing_rad";
     follow(experiment, {{"bearing_rad"}, {truth, -1}}, truth,
            [&](const Run& run, std::size_t i) { return at(run, truth, i); });

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <functional>
+#include <numbers>
 
 using namespace puckloop::gap;
 using namespace puckloop::gap::tests;
@@ -173,6 +174,11 @@ TEST_CASE("clocks that go back, stand still, wrap or jump") {
         return fmt::format("{}", std::fmod(steps + 32000 + 32768, 65536) - 32768);
     };
     CHECK_THAT(refusal(changed(clean("motion"), "steps_left", wrap)), Contains("16-bit"));
+    const auto long_wrap = [](std::size_t, double steps) {
+        return fmt::format("{:.0f}", std::fmod(steps + 4294967296 - 700, 4294967296));
+    };
+    CHECK_THAT(refusal(changed(clean("motion"), "steps_left", long_wrap)),
+               Contains("jumps by") && !Contains("16-bit"));
 }
 
 TEST_CASE("a counter that is reset is refused however long a row lasts, one that passes 0 is not") {
@@ -188,6 +194,25 @@ TEST_CASE("a counter that is reset is refused however long a row lasts, one that
     CHECK_THAT(refusal(changed(drive, "steps_right", less(41, 1400))),
                Contains("run0.csv: row 42: steps_right") && Contains("was reset"));
     CHECK(refusal(changed(drive, "steps_right", less(0, 700))) == "");
+}
+
+TEST_CASE("a robot that turns back fast in one long row has no counter that was reset") {
+    Made spin{"motion", {"t_s", "steps_left", "steps_right", "x_m", "y_m", "theta_rad"}, {}, "", 3};
+    constexpr double kMetre = 2 * std::numbers::pi * 0.0205 / 1000;
+    for (int i = 0; i < 80; ++i) {
+        const double steps = 200 * (i % 20);
+        spin.rows.emplace_back();
+        for (const double value : {5.0 * i, -steps, steps, 1e-4 * (i % 3), 0.0, 2 * steps * kMetre / 0.053})
+            spin.rows.back().push_back(fmt::format("{:.7g}", value));
+    }
+    CHECK(refusal(spin) == "");
+}
+
+TEST_CASE("a heading in coarse steps is in radians all the same") {
+    constexpr double kStep = std::numbers::pi / 8;
+    CHECK(refusal(changed(clean("motion"), "theta_rad", [](std::size_t, double theta) {
+              return fmt::format("{:.7g}", kStep * std::round(theta / kStep));
+          })) == "");
 }
 
 TEST_CASE("constant columns") {

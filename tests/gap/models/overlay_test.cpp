@@ -205,3 +205,12 @@ TEST_CASE("an overlay's number that is none is refused in its own file") {
                       Contains(file.string()) && Contains("line 2") && Contains("not finite"));
     std::filesystem::remove(file);
 }
+
+TEST_CASE("commands lost one after another are as many in a run") {
+    const std::string text = overlay_toml({}, said({{"command.loss", 0.02}, {"command.loss_burst", 0.67}}));
+    CHECK_THAT(text, Contains("# 0.67 of command.loss_burst was found") && !Contains("[measurement]"));
+    std::smatch byte;
+    REQUIRE(std::regex_search(text, byte, std::regex("command_loss = ([0-9.e-]+)")));
+    // A command is lost with any of its 12 bytes. In the long run p = 0.02 (1 - p) + (0.02 + 0.67 * 0.98) p.
+    CHECK(1 - std::pow(1 - std::stod(byte[1]), 12) == Approx(0.02 / (1 - 0.67 * 0.98)));
+}
