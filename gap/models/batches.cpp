@@ -194,20 +194,22 @@ double place_batches(const Observable& o, std::size_t from, std::size_t to, doub
     return deliver(o, from, to, grid_of(o, from, to, batch, arrival), arrival, placed);
 }
 
-void follow_even_frames(std::size_t from, std::size_t to, double batch, double rounding,
-                        const std::vector<double>& begun, const std::vector<double>& ready, Placed& placed) {
-    if (is_fine_batch(batch)) {
-        std::complex<double> beat;
-        for (std::size_t k = from; k < to; ++k)
-            beat += std::polar(1.0, kTurn * begun[k] / batch);
-        const auto rows = static_cast<double>(to - from);
-        if (std::abs(beat) < kHalfMet * rows || std::norm(beat) < kSurelyMet * rows) return;
-        for (std::size_t k = from; k < to; ++k) {
-            placed.mean[k] = ready[k];
-            placed.extra[k] = 0.0;
-        }
-        return;
+void pass_over_locked(std::size_t from, std::size_t to, double batch, const std::vector<double>& begun,
+                      const std::vector<double>& ready, Placed& placed) {
+    std::complex<double> beat;
+    for (std::size_t k = from; k < to; ++k)
+        beat += std::polar(1.0, kTurn * begun[k] / batch);
+    const auto rows = static_cast<double>(to - from);
+    if (std::abs(beat) < kHalfMet * rows || std::norm(beat) < kSurelyMet * rows) return;
+    for (std::size_t k = from; k < to; ++k) {
+        placed.mean[k] = ready[k];
+        placed.extra[k] = 0.0;
     }
+}
+
+void follow_even_frames(std::size_t from, std::size_t to, double batch, double rounding,
+                        const std::vector<double>& ready, Placed& placed) {
+    if (is_fine_batch(batch)) return;
     const auto wait = [&](std::size_t k) { return placed.mean[k] - batch * placed.later[k] - ready[k]; };
     for (std::size_t k = from + 1; k < to; ++k)
         if (std::abs(wait(k) - wait(k - 1)) > kClockDoubt + kRoundings * rounding) return;

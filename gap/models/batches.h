@@ -47,11 +47,15 @@ double place_batches(const Observable& arrivals, std::size_t from, std::size_t t
 
 /// Where the frames of a chain go on as evenly as batches do, but for the `rounding` of the robot's clock
 /// (s), nothing shows that they waited, and a grid of their own rate would be a clock of another: there
-/// batches that are not fine follow the frames, and show by the steps of arrivals alone. Fine ones show by
-/// how waits fall and jump: where the loop meets them at less than half of their phases (`begun`: when each
-/// frame was, s) only what frames hold parts them, of which any function looks so, and they do nothing.
+/// batches that are not fine follow the frames, and show by the steps of arrivals alone.
 void follow_even_frames(std::size_t from, std::size_t to, double batch, double rounding,
-                        const std::vector<double>& begun, const std::vector<double>& ready, Placed& placed);
+                        const std::vector<double>& ready, Placed& placed);
+
+/// Fine batches show by how waits fall and jump: where the loop meets them at less than half of their phases
+/// (`begun`: when it was at each frame, s) only what frames hold parts them, of which any function looks so.
+/// There they do nothing.
+void pass_over_locked(std::size_t from, std::size_t to, double batch, const std::vector<double>& begun,
+                      const std::vector<double>& ready, Placed& placed);
 
 /// How likely each row's batch was before it was seen: the next one as often as frames caught it that were
 /// ready as long before, any other alike.

@@ -422,14 +422,16 @@ class TimingModel final : public ModelOf<Numbers> {
         const Observable& o = arrivals();
         const double batch = now.batch;
         const std::vector<double> arrival = arrivals_ready(now);
-        std::vector<double> begun;
-        for (std::size_t k = 0; k < arrival.size(); ++k)
+        const bool fine = batch >= shortest_ && is_fine_batch(batch);
+        std::vector<double> begun;  // asked of fine batches only
+        for (std::size_t k = 0; fine && k < arrival.size(); ++k)
             begun.push_back(arrival[k] - handling_of(now, arrived_[k]));
         Placed placed{arrival, {}, {}, {}};
         for (const auto& [i, end] : stretches_of(o, o.y.size())) {
             if (batch >= shortest_) {
                 place_batches(o, i, end, batch, arrival, placed);
-                follow_even_frames(i, end, batch, rounding_, begun, arrival, placed);
+                follow_even_frames(i, end, batch, rounding_, arrival, placed);
+                if (fine) pass_over_locked(i, end, batch, begun, arrival, placed);
             }
             std::vector<double> left;
             for (std::size_t k = i; k < end; ++k)
