@@ -7,6 +7,7 @@
 #include "emu/bluetooth/exchange.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/commands/text_files.h"
 #include "tools/experiments/exchange_boards.h"
 
 #include <fmt/format.h>
@@ -78,11 +79,7 @@ void run(const Options& options, int& status) {
     if (options.boards == options.firmware.empty())
         throw InputError("", "bench bluetooth", "emulated boards need a program, and nothing else does",
                          "--boards and --firmware IMAGE together");
-    std::error_code failed;
-    std::filesystem::create_directories(options.out, failed);
-    if (failed)
-        throw InputError(options.out.string(), "--out", "cannot be made: " + failed.message(),
-                         "a folder for results");
+    make_out_folder(options.out);
     const ExchangeTimes times = options.boards ? by_boards(options) : by_modules(options);
     const std::string name = options.boards ? options.firmware.filename().string() : "drawn";
     write_file(options.out / "exchanges.svg", exchange_picture(times, name));

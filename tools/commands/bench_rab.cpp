@@ -7,6 +7,7 @@
 #include "physics/ir/published_strengths.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/commands/text_files.h"
 #include "tools/rab/measure.h"
 #include "tools/rab/picture.h"
 
@@ -61,11 +62,7 @@ void run(Options& options, int& status) {
     for (const double centimetres : options.distances_cm)
         what.distances.push_back(centimetres / kCentimetres);
     take_parameters(options);
-    std::error_code failed;
-    std::filesystem::create_directories(options.out, failed);
-    if (failed)
-        throw InputError(options.out.string(), "--out", "cannot be made: " + failed.message(),
-                         "a folder for results");
+    make_out_folder(options.out);
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const cosim::InterruptGuard interrupt;
     const RabMeasured measured = measure_rab(

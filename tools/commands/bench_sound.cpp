@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "tools/cli/check.h"
+#include "tools/commands/text_files.h"
 #include "tools/experiments/ears_radio.h"
 #include "tools/experiments/exchange_boards.h"
 #include "tools/experiments/pictures.h"
@@ -95,11 +96,7 @@ void run(Options& options, int& status) {
     if (others && sound.firmware.empty())
         throw InputError("", "bench sound", "the robots need a program", "--firmware IMAGE");
     if (sound.walker.empty()) sound.walker = sound.firmware;
-    std::error_code failed;
-    std::filesystem::create_directories(options.out, failed);
-    if (failed)
-        throw InputError(options.out.string(), "--out", "cannot be made: " + failed.message(),
-                         "a folder for results");
+    make_out_folder(options.out);
     sound.folder = options.out / "trials";
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const TrialProgress progress = [terminal](int trial, int trials) {

@@ -48,4 +48,12 @@ void write_text(const std::string& path, std::string_view text) {
         throw RunError(path + ": cannot be written: " + std::strerror(errno));
 }
 
+void make_out_folder(const std::filesystem::path& folder) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed)
+        throw InputError(folder.string(), "--out", "cannot be made: " + failed.message(),
+                         "a folder for results");
+}
+
 }  // namespace puckloop::tools
