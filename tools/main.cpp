@@ -1,9 +1,9 @@
 // puckloop: a table of subcommands. `gap` is a program of its own (tools/gap).
 
+#include "run/factory/node_process.h"
+#include "run/plan/linux_arguments.h"
 #include "tools/cli/program.h"
 #include "tools/commands.h"
-#include "tools/run/linux_arguments.h"
-#include "tools/run/node_process.h"
 
 #include <string_view>
 

@@ -7,7 +7,7 @@
 #include "gap/data/problems.h"
 #include "gap/sync/sync.h"
 #include "gap/validate/checks.h"
-#include "scenarios/reader.h"
+#include "scenarios/reader/reader.h"
 
 #include <fmt/ranges.h>
 

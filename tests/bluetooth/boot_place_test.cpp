@@ -1,7 +1,7 @@
 // Finding out where in a packet the boot loader is, against a boot loader that is somewhere.
 
 #include "base/random.h"
-#include "tools/upload/boot_place.h"
+#include "bench/upload/boot_place.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "tools/exec/ends/pty_speed.h"
-#include "tools/upload/serial_upload.h"
+#include "bench/upload/serial_upload.h"
+#include "ends/pty_speed.h"
 
 #include <catch2/catch.hpp>
 

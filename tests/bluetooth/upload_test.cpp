@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "tools/upload/boot_packets.h"
+#include "bench/upload/boot_packets.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "campaigns/engine/campaign_file.h"
+#include "campaigns/engine/case_run.h"
+#include "campaigns/engine/plan.h"
 #include "tests/scratch.h"
-#include "tools/faults/campaign_file.h"
-#include "tools/faults/case_run.h"
-#include "tools/faults/plan.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // A whole campaign: the same table with any number of workers, after kills, and on a disk that was full.
 
 #include "base/random.h"
+#include "campaigns/engine/store.h"
 #include "tests/campaign/small_campaign.h"
-#include "tools/faults/store.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // Outcomes of made-up runs whose fault, time and size are drawn.
 
 #include "base/random.h"
+#include "campaigns/engine/findings.h"
+#include "campaigns/engine/outcome.h"
 #include "tests/scratch.h"
-#include "tools/faults/findings.h"
-#include "tools/faults/outcome.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // Which cases there are: grids, positions in records, what is pruned, pairs of survivors.
 
 #include "base/random.h"
-#include "tools/faults/case_run.h"
-#include "tools/faults/findings.h"
-#include "tools/faults/positions.h"
+#include "campaigns/engine/case_run.h"
+#include "campaigns/engine/findings.h"
+#include "campaigns/engine/positions.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

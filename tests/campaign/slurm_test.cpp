@@ -1,9 +1,9 @@
 // The same campaign on a real Slurm cluster: the same table, after a kill, too.
 
+#include "campaigns/engine/store.h"
 #include "tests/campaign/slurm_cluster.h"
 #include "tests/campaign/small_campaign.h"
 #include "tests/end_to_end/one_line.h"
-#include "tools/faults/store.h"
 
 #include <catch2/catch.hpp>
 

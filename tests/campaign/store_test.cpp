@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "campaigns/engine/store.h"
+#include "campaigns/engine/table.h"
 #include "tests/scratch.h"
-#include "tools/faults/store.h"
-#include "tools/faults/table.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // has the same time whatever the grants, and its tables are the same.
 
 #include "linuxboard/coordinator/event_log.h"
-#include "linuxboard/shim/linux_node.h"
+#include "linuxboard/shim/node/linux_node.h"
 #include "protocols/uart_sampling.h"
 #include "tests/coordinator/simulated_mesh.h"
 #include "tests/scratch.h"

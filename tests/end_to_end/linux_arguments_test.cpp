@@ -1,6 +1,6 @@
 // `--linux PROGRAM [ARG]...`: which words are the program's.
 
-#include "tools/run/linux_arguments.h"
+#include "run/plan/linux_arguments.h"
 
 #include <catch2/catch.hpp>
 

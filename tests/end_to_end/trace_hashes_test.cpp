@@ -3,10 +3,10 @@
 // firmware or of a scenario changes them; a change of how runs are executed must not.
 
 #include "cosim/conductor.h"
+#include "run/factory/node_factory.h"
+#include "run/plan/setup.h"
 #include "tests/end_to_end/load.h"
 #include "tests/end_to_end/workbench.h"
-#include "tools/run/node_factory.h"
-#include "tools/run/setup.h"
 
 #include <catch2/catch.hpp>
 #include <gnu/libc-version.h>

@@ -1,4 +1,4 @@
-#include "tools/exec/ends/script_end.h"
+#include "ends/script_end.h"
 
 #include "base/error.h"
 

@@ -1,6 +1,6 @@
 // The bus master of the bench, against a slave that answers as it is set to.
 
-#include "tools/exec/i2c_script_master.h"
+#include "bench/i2c_script_master.h"
 
 #include <catch2/catch.hpp>
 

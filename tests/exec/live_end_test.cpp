@@ -1,11 +1,11 @@
 // Ends with a clock of their own: the pace of the wire in both directions, a pty's rate, hanging up.
 
-#include "tools/exec/bench.h"
-#include "tools/exec/ends/pty_speed.h"
+#include "bench/bench.h"
+#include "ends/pty_speed.h"
 
 #include "emu/image/image.h"
 #include "protocols/uart_sampling.h"
-#include "tools/run/outside_node.h"
+#include "run/factory/outside_node.h"
 
 #include <catch2/catch.hpp>
 

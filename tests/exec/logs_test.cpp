@@ -1,7 +1,7 @@
-#include "tools/exec/logs.h"
+#include "bench/logs.h"
 
 #include "base/error.h"
-#include "tools/exec/text_input.h"
+#include "ends/text_input.h"
 
 #include <catch2/catch.hpp>
 

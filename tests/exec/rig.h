@@ -1,8 +1,8 @@
 #pragma once
 // A real image on the bench, for tests: bytes in and out with their times, signal changes, registers.
 
-#include "tools/exec/bench.h"
-#include "tools/exec/ends/script_end.h"
+#include "bench/bench.h"
+#include "ends/script_end.h"
 
 #include <optional>
 #include <string>

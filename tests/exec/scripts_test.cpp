@@ -1,9 +1,9 @@
-#include "tools/exec/scripts.h"
+#include "ends/scripts.h"
 
 #include "base/error.h"
 #include "base/random.h"
 #include "emu/pic/signals.h"
-#include "tools/exec/ends/uart_spec.h"
+#include "ends/uart_spec.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // Sound on the bench: what a program plays through DCI and codec is speaker.wav.
 
+#include "bench/wav_file.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
-#include "tools/exec/wav_file.h"
 
 #include "base/error.h"
 #include "emu/image/image.h"

@@ -1,4 +1,4 @@
-#include "tools/exec/options.h"
+#include "bench/options.h"
 
 #include "base/error.h"
 

@@ -2,7 +2,7 @@
 // One Linux node on a bench: the test plays the other ends of its serial port and its I2C bus.
 
 #include "base/random.h"
-#include "linuxboard/shim/linux_node.h"
+#include "linuxboard/shim/node/linux_node.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "linuxboard/shim/last_line.h"
+#include "linuxboard/shim/node/last_line.h"
 
 #include <catch2/catch.hpp>
 

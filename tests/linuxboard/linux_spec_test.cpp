@@ -1,7 +1,7 @@
 // The node's description: defaults, units, and what is refused with its key.
 
 #include "base/error.h"
-#include "linuxboard/shim/spec.h"
+#include "linuxboard/shim/kernel/spec.h"
 
 #include <catch2/catch.hpp>
 

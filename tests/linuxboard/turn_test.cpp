@@ -1,8 +1,8 @@
 // The word by which a program and its node take turns, and what goes through a channel that is too small.
 
 #include "base/random.h"
-#include "linuxboard/shim/process.h"
-#include "linuxboard/shim/turn.h"
+#include "linuxboard/shim/node/process.h"
+#include "linuxboard/shim/wire/turn.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // What counts as a difference, faults of the recorded run among it.
 
-#include "tools/replay/comparison.h"
+#include "replay/comparison.h"
 
 #include <catch2/catch.hpp>
 

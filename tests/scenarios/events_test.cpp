@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "scenarios/events/action_forms.h"
-#include "scenarios/events/command_text.h"
-#include "scenarios/events/event_tables.h"
-#include "scenarios/scenario.h"
+#include "scenarios/reader/events/action_forms.h"
+#include "scenarios/reader/events/command_text.h"
+#include "scenarios/reader/events/event_tables.h"
+#include "scenarios/reader/scenario.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>

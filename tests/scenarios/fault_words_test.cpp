@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "scenarios/faults/fault_places.h"
-#include "scenarios/faults/fault_tables.h"
-#include "scenarios/faults/fault_words.h"
+#include "scenarios/reader/faults/fault_places.h"
+#include "scenarios/reader/faults/fault_tables.h"
+#include "scenarios/reader/faults/fault_words.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>

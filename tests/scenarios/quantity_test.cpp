@@ -1,4 +1,4 @@
-#include "scenarios/quantity.h"
+#include "scenarios/reader/quantity.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // [radio], [tam.xbee], [coordinator], and faults on their links.
 
 #include "base/error.h"
-#include "scenarios/scenario.h"
+#include "scenarios/reader/scenario.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>
@@ -111,8 +111,7 @@ TEST_CASE("faults sit on modules' lines and on the air") {
     CHECK(fault("link = \"coordinator.uart\"\nfrom = \"coordinator.xbee\"\n") == "accepted");
     CHECK_THAT(fault("link = \"tam0.radio\"\nkind = \"cut\"\n"),
                Catch::Contains("tam0.radio cannot suffer 'cut' (expected one of drop, flip,"));
-    CHECK_THAT(fault("link = \"tam0.radio\"\nbytes = [\"1\"]\n"),
-               Catch::Contains("unknown key 'bytes'"));
+    CHECK_THAT(fault("link = \"tam0.radio\"\nbytes = [\"1\"]\n"), Catch::Contains("unknown key 'bytes'"));
     CHECK_THAT(fault("link = \"tam0.radio\"\nfrom = \"tam0.avr\"\n"),
                Catch::Contains("'tam0.avr' is at no end of tam0.radio (expected tam0.xbee or ether)"));
     CHECK_THAT(fault("link = \"tam1.radio\"\n"), Catch::Contains("tam0.xbee, tam0.radio, coordinator.uart"));

@@ -1,14 +1,14 @@
 // What `puckloop bench` computes and starts, as far as it does not depend on how fast this machine is.
 
 #include "base/error.h"
-#include "scenarios/scenario.h"
+#include "benchmark/board_replay.h"
+#include "benchmark/cases.h"
+#include "benchmark/process_memory.h"
+#include "benchmark/timed_run.h"
+#include "benchmark/wander_scenario.h"
+#include "scenarios/reader/scenario.h"
 #include "tests/scratch.h"
 #include "tests/tools/shell.h"
-#include "tools/bench/board_replay.h"
-#include "tools/bench/cases.h"
-#include "tools/bench/process_memory.h"
-#include "tools/bench/timed_run.h"
-#include "tools/bench/wander_scenario.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

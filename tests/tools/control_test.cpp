@@ -1,9 +1,9 @@
 // Where a running world takes commands: whatever a client sends, and what a killed run leaves.
 
 #include "base/error.h"
+#include "run/control/control_place.h"
+#include "run/control/control_socket.h"
 #include "tests/scratch.h"
-#include "tools/run/control/control_place.h"
-#include "tools/run/control/control_socket.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "tools/run/outside_node.h"
+#include "run/factory/outside_node.h"
 
 #include "base/error.h"
 #include "base/random.h"

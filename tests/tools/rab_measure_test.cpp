@@ -2,9 +2,9 @@
 // measurement with a real image where there is one.
 
 #include "base/error.h"
-#include "tools/rab/i2c_host.h"
-#include "tools/rab/measure.h"
-#include "tools/rab/picture.h"
+#include "reproductions/rab/i2c_host.h"
+#include "reproductions/rab/measure.h"
+#include "reproductions/rab/picture.h"
 
 #include <catch2/catch.hpp>
 

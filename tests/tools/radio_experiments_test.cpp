@@ -1,9 +1,9 @@
 // Exchanges by Bluetooth as robots report them: read, summarised, and made by emulated boards in short runs.
 // All draws follow Catch's seed (--rng-seed).
 
-#include "tools/experiments/ears_radio.h"
-#include "tools/experiments/ellipse.h"
-#include "tools/experiments/exchange_boards.h"
+#include "reproductions/ears_radio.h"
+#include "reproductions/ellipse.h"
+#include "reproductions/exchange_boards.h"
 
 #include "base/error.h"
 #include "tests/scratch.h"

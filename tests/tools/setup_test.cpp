@@ -1,8 +1,8 @@
 // From a scenario and the command line to nodes and links.
 
 #include "base/error.h"
+#include "run/plan/setup.h"
 #include "tests/scratch.h"
-#include "tools/run/setup.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // The experiments with sound: their arithmetic on drawn values, and short runs of the project's own firmware.
 // All draws follow Catch's seed (--rng-seed): a case that fails does so again.
 
-#include "tools/experiments/ellipse.h"
-#include "tools/experiments/experiments.h"
+#include "reproductions/ellipse.h"
+#include "reproductions/experiments.h"
 
 #include "tests/scratch.h"
 

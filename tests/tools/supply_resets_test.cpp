@@ -1,6 +1,6 @@
 // The lines of a run's summary about boards that their supply reset.
 
-#include "tools/run/supply_resets.h"
+#include "run/report/supply_resets.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

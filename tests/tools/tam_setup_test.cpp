@@ -1,10 +1,10 @@
 // TAMs of a scenario become nodes and links.
 
 #include "base/error.h"
+#include "run/factory/node_factory.h"
+#include "run/factory/preflight.h"
+#include "run/plan/setup.h"
 #include "tests/scratch.h"
-#include "tools/run/node_factory.h"
-#include "tools/run/preflight.h"
-#include "tools/run/setup.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

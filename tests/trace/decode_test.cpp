@@ -8,7 +8,7 @@
 #include "protocols/uart_sampling.h"
 #include "protocols/xbee_frame.h"
 #include "protocols/xbee_message.h"
-#include "tools/trace/decode.h"
+#include "traces/decode.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

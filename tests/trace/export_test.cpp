@@ -3,7 +3,7 @@
 #include "trace_kit.h"
 
 #include "base/error.h"
-#include "tools/trace/export.h"
+#include "traces/export.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -3,9 +3,9 @@
 #include "trace_kit.h"
 
 #include "base/error.h"
-#include "tools/trace/decode.h"
-#include "tools/trace/edges.h"
-#include "tools/trace/fault_marks.h"
+#include "traces/decode.h"
+#include "traces/edges.h"
+#include "traces/fault_marks.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "trace_kit.h"
 
 #include "base/error.h"
-#include "tools/trace/edges.h"
+#include "traces/edges.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,12 +1,12 @@
 // `puckloop act RUN COMMAND`: does something to the world of a run that is on.
 
 #include "base/error.h"
-#include "scenarios/events/action_forms.h"
-#include "scenarios/events/event_tables.h"
+#include "run/control/control_place.h"
+#include "run/control/control_socket.h"
+#include "scenarios/reader/events/action_forms.h"
+#include "scenarios/reader/events/event_tables.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/run/control/control_place.h"
-#include "tools/run/control/control_socket.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // `puckloop bench`: performance figures, each measured beside a reference that the same machine runs in turn.
 
 #include "base/error.h"
+#include "benchmark/cases.h"
 #include "emu/chip/translation_switch.h"
-#include "tools/bench/cases.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"

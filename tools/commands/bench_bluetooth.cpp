@@ -5,10 +5,10 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "emu/bluetooth/exchange.h"
+#include "reproductions/exchange_boards.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands/text_files.h"
-#include "tools/experiments/exchange_boards.h"
 
 #include <fmt/format.h>
 

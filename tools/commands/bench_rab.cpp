@@ -4,12 +4,12 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "cosim/interrupt.h"
+#include "reproductions/rab/measure.h"
+#include "reproductions/rab/picture.h"
 #include "physics/ir/published_strengths.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands/text_files.h"
-#include "tools/rab/measure.h"
-#include "tools/rab/picture.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -3,11 +3,11 @@
 #include "tools/commands/bench_sound.h"
 #include "base/error.h"
 #include "base/text_file.h"
+#include "reproductions/ears_radio.h"
+#include "reproductions/exchange_boards.h"
+#include "reproductions/pictures.h"
 #include "tools/cli/check.h"
 #include "tools/commands/text_files.h"
-#include "tools/experiments/ears_radio.h"
-#include "tools/experiments/exchange_boards.h"
-#include "tools/experiments/pictures.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

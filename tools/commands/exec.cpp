@@ -1,12 +1,12 @@
 // `puckloop exec`: one chip or board alone on the bench.
 
 #include "base/error.h"
+#include "bench/options.h"
 #include "emu/chip/translation_switch.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
 #include "tools/commands.h"
-#include "tools/exec/options.h"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
 // puckloop faults: campaigns of injected faults (docs/faults.md).
 
 #include "base/error.h"
+#include "campaigns/engine/campaign.h"
+#include "campaigns/engine/html.h"
+#include "campaigns/engine/table.h"
+#include "campaigns/engine/worker.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/faults/campaign.h"
-#include "tools/faults/html.h"
-#include "tools/faults/table.h"
-#include "tools/faults/worker.h"
 
 #include <fmt/format.h>
 

@@ -1,16 +1,16 @@
 // puckloop replay: one node of a recorded run, alone.
 
-#include "tools/replay/replay.h"
+#include "replay/replay.h"
 
 #include "base/error.h"
+#include "replay/dump.h"
+#include "run/factory/node_factory.h"
+#include "run/plan/setup.h"
+#include "run/run_scenario.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/replay/dump.h"
-#include "tools/run/node_factory.h"
-#include "tools/run/run_scenario.h"
-#include "tools/run/setup.h"
-#include "tools/trace/recorded_trace.h"
+#include "traces/recorded_trace.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -4,9 +4,9 @@
 #include "cosim/trace/trace_stats.h"
 #include "tools/cli/command.h"
 #include "tools/commands/trace_parts.h"
-#include "tools/trace/export.h"
-#include "tools/trace/fault_marks.h"
-#include "tools/trace/recorded_trace.h"
+#include "traces/export.h"
+#include "traces/fault_marks.h"
+#include "traces/recorded_trace.h"
 
 #include <fmt/format.h>
 

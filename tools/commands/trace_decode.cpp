@@ -4,7 +4,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands/trace_parts.h"
-#include "tools/trace/decode.h"
+#include "traces/decode.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
-#include "tools/rab_losses/results.h"
+#include "traces/rab_losses/results.h"
 
 #include <fmt/format.h>
 

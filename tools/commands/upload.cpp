@@ -1,10 +1,10 @@
 // `puckloop upload`: a program into the flash of an e-puck's main board by its resident boot loader.
 
 #include "base/error.h"
+#include "bench/upload/serial_upload.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/upload/serial_upload.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -8,10 +8,10 @@
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/report/report.h"
+#include "selftest/emulate/rerun.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
-#include "tools/gap/emulate/rerun.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 

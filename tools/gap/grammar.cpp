@@ -1,8 +1,8 @@
 // puckloop gap selftest --grammar: cases drawn at random, with a seed that is new at each full run.
 
 #include "base/error.h"
+#include "selftest/grammar/curves.h"
 #include "tools/gap/folders.h"
-#include "tools/gap/selftest/grammar/curves.h"
 #include "tools/gap/subcommands.h"
 
 #include <fmt/format.h>

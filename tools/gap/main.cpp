@@ -1,8 +1,8 @@
 // puckloop-gap: what `puckloop gap` becomes. It serves nodes too: experiments on the emulator are runs.
 
+#include "run/factory/node_process.h"
 #include "tools/cli/program.h"
 #include "tools/gap/subcommands.h"
-#include "tools/run/node_process.h"
 
 #include <array>
 

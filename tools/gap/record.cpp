@@ -1,14 +1,14 @@
 // puckloop gap record: an experiment performed on the emulator, firmware in the loop.
 
-#include "tools/gap/emulate/record.h"
+#include "selftest/emulate/record.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "run/plan/program_path.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
-#include "tools/run/program_path.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

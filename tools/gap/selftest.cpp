@@ -1,11 +1,11 @@
 // puckloop gap selftest: does the tool find what was hidden?
 
 #include "base/error.h"
+#include "selftest/emulate/secret_cases.h"
+#include "selftest/run_cases.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
-#include "tools/gap/emulate/secret_cases.h"
 #include "tools/gap/folders.h"
-#include "tools/gap/selftest/run_cases.h"
 #include "tools/gap/subcommands.h"
 
 #include <fmt/format.h>

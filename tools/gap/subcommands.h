@@ -1,7 +1,7 @@
 #pragma once
 // `puckloop gap` and its subcommands, each in a file of its own.
 
-#include "tools/gap/emulate/stage.h"
+#include "selftest/emulate/stage.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -16,7 +16,7 @@
 #include "cosim/core/time.h"
 #include "linuxboard/shim/devices/line_discipline.h"
 #include "linuxboard/shim/devices/tty_settings.h"
-#include "linuxboard/shim/wire.h"
+#include "linuxboard/shim/wire/wire.h"
 #include "protocols/uart_line.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "linuxboard/shim/devices/video_device.h"
 
 #include "linuxboard/shim/devices/ioctl_data.h"
-#include "linuxboard/shim/spec.h"
-#include "linuxboard/shim/wire.h"
+#include "linuxboard/shim/kernel/spec.h"
+#include "linuxboard/shim/wire/wire.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

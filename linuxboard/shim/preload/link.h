@@ -2,7 +2,7 @@
 // The way to the node: memory that the program's processes share with it, and a socket that the node passed
 // on.
 
-#include "linuxboard/shim/wire.h"
+#include "linuxboard/shim/wire/wire.h"
 
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-#include "tools/gap/emulate/comparison.h"
+#include "selftest/emulate/comparison.h"
 
 #include "base/random.h"
 

@@ -3,9 +3,9 @@
 
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
+#include "selftest/emulate/record.h"
 #include "tests/gap/simulated.h"
 #include "tests/scratch.h"
-#include "tools/gap/emulate/record.h"
 
 #include <catch2/catch.hpp>
 

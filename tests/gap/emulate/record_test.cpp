@@ -4,11 +4,11 @@
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/sensors/ground.h"
+#include "selftest/emulate/record.h"
+#include "selftest/emulate/secrets.h"
+#include "selftest/emulate/wave_floor.h"
 #include "tests/gap/simulated.h"
 #include "tests/scratch.h"
-#include "tools/gap/emulate/record.h"
-#include "tools/gap/emulate/secrets.h"
-#include "tools/gap/emulate/wave_floor.h"
 
 #include <catch2/catch.hpp>
 

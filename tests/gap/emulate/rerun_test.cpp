@@ -1,11 +1,11 @@
 // A robot that is not as the simulator believes is recorded; the overlay of the cause makes the emulator do
 // what was measured, from the TOML file on to the readings.
 
-#include "scenarios/scenario.h"
+#include "scenarios/reader/scenario.h"
+#include "selftest/emulate/record.h"
+#include "selftest/emulate/rerun.h"
+#include "selftest/emulate/surroundings.h"
 #include "tests/scratch.h"
-#include "tools/gap/emulate/record.h"
-#include "tools/gap/emulate/rerun.h"
-#include "tools/gap/emulate/surroundings.h"
 
 #include <catch2/catch.hpp>
 

@@ -4,8 +4,8 @@
 
 #include "gap/data/experiment.h"
 #include "gap/models/model.h"
+#include "selftest/benches.h"
 #include "tests/scratch.h"
-#include "tools/gap/selftest/benches.h"
 
 #include <cmath>
 #include <map>

@@ -2,14 +2,14 @@
 
 #include "base/error.h"
 #include "gap/effects/effect.h"
+#include "selftest/case_list.h"
+#include "selftest/grammar/ablation.h"
+#include "selftest/grammar/curves.h"
+#include "selftest/grammar/families.h"
+#include "selftest/grammar/laboratory.h"
+#include "selftest/grammar/near_misses.h"
+#include "selftest/rig.h"
 #include "tests/scratch.h"
-#include "tools/gap/selftest/case_list.h"
-#include "tools/gap/selftest/grammar/ablation.h"
-#include "tools/gap/selftest/grammar/curves.h"
-#include "tools/gap/selftest/grammar/families.h"
-#include "tools/gap/selftest/grammar/laboratory.h"
-#include "tools/gap/selftest/grammar/near_misses.h"
-#include "tools/gap/selftest/rig.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // The generator of hidden effects: what it writes the tool can read, and says nothing of what was hidden.
 
 #include "gap/data/experiment.h"
+#include "selftest/case_list.h"
 #include "tests/scratch.h"
-#include "tools/gap/selftest/case_list.h"
 
 #include <catch2/catch.hpp>
 

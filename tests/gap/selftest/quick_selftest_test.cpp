@@ -1,8 +1,8 @@
 // A small self test: strong effects of the cheap kinds are found by name, and nothing where nothing is
 // hidden.
 
+#include "selftest/run_cases.h"
 #include "tests/scratch.h"
-#include "tools/gap/selftest/run_cases.h"
 
 #include <catch2/catch.hpp>
 

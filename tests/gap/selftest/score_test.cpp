@@ -1,7 +1,7 @@
 // Judging verdicts: a right name counts only when it stands first and was said, an interval only when it
 // holds.
 
-#include "tools/gap/selftest/score.h"
+#include "selftest/score.h"
 
 #include <catch2/catch.hpp>
 

@@ -9,7 +9,7 @@
 // All state here belongs to the thread that runs (it holds "the token"), so nothing needs a lock.
 
 #include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/wire.h"
+#include "linuxboard/shim/wire/wire.h"
 
 #include <pthread.h>
 #include <signal.h>

@@ -1,0 +1,199 @@
+#include "campaigns/engine/pool.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace puckloop::faults {
+
+namespace {
+
+constexpr int kTries = 3;
+
+/// A process of its own, and a socket that is its standard input and output.
+class Worker {
+  public:
+    explicit Worker(const PoolOptions& options) {
+        int ends[2];
+        if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+            throw RunError(fmt::format("no worker: {}", std::strerror(errno)));
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+        std::string words[] = {"puckloop", "faults", "worker", options.campaign.string(),
+                               options.out.string()};
+        char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
+                             words[3].data(), words[4].data(), nullptr};
+        const int error = ::posix_spawn(&id_, "/proc/self/exe", &actions, nullptr, arguments, environ);
+        posix_spawn_file_actions_destroy(&actions);
+        ::close(ends[1]);
+        socket_ = ends[0];
+        if (error != 0) {
+            ::close(socket_);
+            throw RunError(fmt::format("no worker: {}", std::strerror(error)));
+        }
+    }
+    ~Worker() {
+        ::close(socket_);
+        if (id_ < 0) return;
+        ::kill(id_, SIGKILL);
+        wait();
+    }
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+
+    void give(const Case& one) {
+        busy = one;
+        std::string line = to_json(one).dump() + '\n';
+        std::size_t done = 0;
+        while (done < line.size()) {
+            const auto count = ::send(socket_, line.data() + done, line.size() - done, MSG_NOSIGNAL);
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) return;  // its end is noticed when we read
+            done += static_cast<std::size_t>(count);
+        }
+    }
+
+    /// False at its end.
+    bool read(std::string& line) {
+        char part[65536];
+        const auto count = ::recv(socket_, part, sizeof part, 0);
+        if (count < 0 && errno == EINTR) return true;
+        if (count <= 0) return false;
+        text_.append(part, static_cast<std::size_t>(count));
+        if (const auto end = text_.find('\n'); end != std::string::npos) {
+            line = text_.substr(0, end);
+            text_.erase(0, end + 1);
+        }
+        return true;
+    }
+
+    /// How it ended: "SIGKILL", "status 1".
+    std::string wait() {
+        int status = 0;
+        while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+        }
+        id_ = -1;
+        if (WIFSIGNALED(status)) return fmt::format("SIG{}", sigabbrev_np(WTERMSIG(status)));
+        return fmt::format("status {}", WEXITSTATUS(status));
+    }
+
+    int socket() const { return socket_; }
+    pid_t id() const { return id_; }
+
+    std::optional<Case> busy;
+
+  private:
+    pid_t id_ = -1;
+    int socket_ = -1;
+    std::string text_;
+};
+
+class Pool {
+  public:
+    Pool(const PoolOptions& options, const std::vector<Case>& cases,
+         const std::function<void(int, const nlohmann::json&)>& take)
+        : options_(options), waiting_(cases.begin(), cases.end()), take_(take) {}
+
+    void run() {
+        const auto count = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs), waiting_.size());
+        for (std::size_t i = 0; i < count; ++i)
+            workers_.push_back(std::make_unique<Worker>(options_));
+        for (auto& worker : workers_)
+            give_next(*worker);
+        while (std::any_of(workers_.begin(), workers_.end(),
+                           [](const auto& worker) { return worker->busy.has_value(); }))
+            listen();
+        if (!problem_.empty()) throw RunError(problem_);
+    }
+
+  private:
+    void give_next(Worker& worker) {
+        worker.busy.reset();
+        if (waiting_.empty() || !problem_.empty()) return;
+        const Case next = waiting_.front();
+        waiting_.pop_front();
+        worker.give(next);
+    }
+
+    void listen() {
+        std::vector<pollfd> sockets;
+        for (const auto& worker : workers_)
+            sockets.push_back({worker->socket(), POLLIN, 0});
+        const int ready = ::poll(sockets.data(), sockets.size(), 500);
+        if (options_.interrupted != nullptr && *options_.interrupted != 0)
+            throw RunError(
+                fmt::format("interrupted (SIG{}); the results so far are kept, the same command goes on",
+                            sigabbrev_np(*options_.interrupted)));
+        if (ready <= 0) return;
+        for (std::size_t i = 0; i < sockets.size(); ++i)
+            if (sockets[i].revents != 0) hear(i);
+    }
+
+    void hear(std::size_t index) {
+        Worker& worker = *workers_[index];
+        std::string line;
+        if (!worker.read(line)) return replace(index);
+        if (line.empty()) return;
+        const nlohmann::json result = nlohmann::json::parse(line);
+        const Case one = worker.busy.value();
+        if (result.contains("problem"))
+            try_again(one, result.at("problem"));
+        else
+            take_(result.at("id"), result.at("verdict"));
+        give_next(worker);
+    }
+
+    void replace(std::size_t index) {
+        const std::optional<Case> lost = workers_[index]->busy;
+        const pid_t id = workers_[index]->id();
+        const std::string end = workers_[index]->wait();
+        if (lost) try_again(*lost, fmt::format("worker {} died ({})", id, end));
+        workers_[index] = std::make_unique<Worker>(options_);
+        give_next(*workers_[index]);
+    }
+
+    void try_again(const Case& one, const std::string& why) {
+        if (++tries_[one.id] < kTries) {
+            fmt::print(stderr, "puckloop: case {}: {}: it is run again\n", one.id, why);
+            waiting_.push_front(one);
+        } else if (problem_.empty()) {
+            problem_ = fmt::format(
+                "case {} failed {} times: {}; the results so far are kept, the same command goes on", one.id,
+                kTries, why);
+        }
+    }
+
+    const PoolOptions& options_;
+    std::deque<Case> waiting_;
+    const std::function<void(int, const nlohmann::json&)>& take_;
+    std::vector<std::unique_ptr<Worker>> workers_;
+    std::map<int, int> tries_;
+    std::string problem_;
+};
+
+}  // namespace
+
+void run_local(const PoolOptions& options, const std::vector<Case>& cases,
+               const std::function<void(int id, const nlohmann::json& verdict)>& take) {
+    if (!cases.empty()) Pool(options, cases, take).run();
+}
+
+}  // namespace puckloop::faults

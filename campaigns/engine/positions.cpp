@@ -1,0 +1,160 @@
+#include "campaigns/engine/positions.h"
+
+#include "scenarios/reader/quantity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace puckloop::faults {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double kPause = 2.0;  ///< byte times between two records
+
+/// Kinds that do something to a frame and nothing where there is none.
+constexpr std::array kOnFrames{"drop",  "loss",    "flip", "corrupt",  "duplicate", "insert",
+                               "swap",  "reorder", "cut",  "truncate", "parity",    "stop",
+                               "delay", "rate",    "baud", "batch",    "throttle"};
+
+double seconds(const json& fault, const char* key, double fallback) {
+    if (!fault.contains(key) || !fault.at(key).is_string()) return fallback;
+    try {
+        return scenarios::parse_quantity(fault.at(key).get<std::string>(), scenarios::Dimension::Time);
+    } catch (const scenarios::QuantityError&) {
+        return fallback;
+    }
+}
+
+int byte_value(const std::string& text) {
+    try {
+        return std::stoi(text, nullptr, 0);
+    } catch (const std::exception&) {
+        return -1;
+    }
+}
+
+bool among(const json& bytes, const std::string& value) {
+    const int sent = byte_value("0x" + value);
+    return std::any_of(bytes.begin(), bytes.end(), [&](const json& byte) {
+        return (byte.is_string() ? byte_value(byte.get<std::string>()) : -2) == sent;
+    });
+}
+
+}  // namespace
+
+std::vector<std::size_t> records_of(const Sender& sender, double after) {
+    std::vector<std::size_t> begins;
+    double idle_from = -1;
+    for (std::size_t i = 0; i < sender.times.size(); ++i) {
+        const bool starts = i == 0 || sender.times[i] > idle_from + kPause * sender.frame_s[i];
+        idle_from = sender.times[i] + sender.frame_s[i];
+        if (starts && sender.times[i] >= after) begins.push_back(i);
+    }
+    begins.push_back(sender.times.size());
+    return begins;
+}
+
+std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const Profile& nominal) {
+    const std::string name = sender_name(value_text(fault["link"]), value_text(fault["from"]));
+    const auto found = nominal.senders.find(name);
+    static const Sender kNobody{};
+    const Sender& sender = found == nominal.senders.end() ? kNobody : found->second;
+    const std::vector<std::size_t> begins = records_of(sender, sweep.after);
+    std::vector<Position> positions;
+    for (const int record : sweep.records) {
+        const auto r = static_cast<std::size_t>(record);
+        const bool there = r + 1 < begins.size();
+        const std::size_t length = there ? begins[r + 1] - begins[r] : 0;
+        std::vector<int> bytes;
+        if (sweep.bytes)
+            bytes = *sweep.bytes;
+        else
+            for (std::size_t i = 0; i < std::max<std::size_t>(1, length); ++i)
+                bytes.push_back(static_cast<int>(i));
+        for (const int byte : bytes) {
+            Position position{fmt::format("byte {}", byte), "0 s", ""};
+            if (sweep.records.size() > 1) position.name = fmt::format("record {} ", record) + position.name;
+            if (!there)
+                position.missing =
+                    fmt::format("{} sends no {} records after {:g} s", name, record + 1, sweep.after);
+            else if (static_cast<std::size_t>(byte) >= length)
+                position.missing = fmt::format("a record of {} bytes", length);
+            else
+                position.begin = fmt::format(
+                    "{:.6f} s",
+                    std::floor(sender.times[begins[r] + static_cast<std::size_t>(byte)] * 1e6) / 1e6);
+            positions.push_back(std::move(position));
+        }
+    }
+    return positions;
+}
+
+namespace {
+
+/// From when to when a fault may act, s.
+std::pair<double, double> window_of(const json& fault) {
+    const double begin = seconds(fault, fault.contains("at") ? "at" : "begin", 0);
+    return {begin, fault.contains("for") ? begin + seconds(fault, "for", 1e9) : seconds(fault, "end", 1e9)};
+}
+
+/// Kinds that do something to a byte on a bus and nothing where there is none; others last.
+constexpr std::array kOnBytes{"nack", "flip", "start", "stop", "stretch", "lose_arbitration", "slow_rise"};
+
+/// Of a bus: transfers with a device that nobody addresses, by a master that makes none then, or none at all.
+std::string useless_on_bus(const std::string& bus, const json& fault, const Profile& nominal) {
+    bool any = false, meant = !fault.contains("address"), then = false;
+    const auto [begin, end] = window_of(fault);
+    const std::string from = fault.contains("from") ? " from " + value_text(fault["from"]) : "";
+    for (const auto& [name, sender] : nominal.senders) {
+        if (!name.starts_with(bus + ".")) continue;
+        if (name.ends_with(from)) {
+            const auto first = std::lower_bound(sender.times.begin(), sender.times.end(), begin);
+            then = then || (first != sender.times.end() && *first < end);
+        }
+        for (const std::string& first : sender.addresses) {
+            any = true;
+            if (!meant && byte_value("0x" + first) >> 1 == byte_value(value_text(fault["address"])))
+                meant = true;
+        }
+    }
+    if (!any) return fmt::format("no transfer on {}", bus);
+    const std::string kind = value_text(fault.value("kind", json("drop")));
+    if (!then && std::find(kOnBytes.begin(), kOnBytes.end(), kind) != kOnBytes.end())
+        return fmt::format("no transfer on {}{} in this window", bus, from);
+    return meant ? std::string()
+                 : fmt::format("nobody addresses {} on {}", value_text(fault["address"]), bus);
+}
+
+}  // namespace
+
+std::string useless(const json& fault, const Profile& nominal) {
+    if (fault.contains("link") && value_text(fault["link"]).ends_with(".i2c"))
+        return useless_on_bus(value_text(fault["link"]), fault, nominal);
+    const std::string kind = value_text(fault.value("kind", json("drop")));
+    if (!fault.contains("link") || std::find(kOnFrames.begin(), kOnFrames.end(), kind) == kOnFrames.end())
+        return {};
+    const std::string link = value_text(fault["link"]);
+    const auto [begin, end] = window_of(fault);
+    bool any = false, value = !fault.contains("bytes");
+    for (const auto& [name, sender] : nominal.senders) {
+        const bool meant = fault.contains("from") ? name == sender_name(link, value_text(fault["from"]))
+                                                  : name.starts_with(link + " from ");
+        if (!meant) continue;
+        for (std::size_t i = 0; i < sender.times.size(); ++i) {
+            if (sender.times[i] < begin || sender.times[i] >= end) continue;
+            any = true;
+            if (!value && among(fault["bytes"], sender.values[i])) value = true;
+            if (value) return {};
+        }
+    }
+    const std::string sender = fault.contains("from") ? " from " + value_text(fault["from"]) : "";
+    return any ? fmt::format("none of these bytes is sent on {}{} in this window", link, sender)
+               : fmt::format("no frame on {}{} in this window", link, sender);
+}
+
+}  // namespace puckloop::faults

@@ -1,0 +1,111 @@
+#include "run/control/control_place.h"
+
+#include "base/error.h"
+#include "run/control/control_socket.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <random>
+
+namespace puckloop::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNote = "control.json";
+constexpr const char* kFolder = "puckloop-";
+constexpr const char* kSocket = "act";
+
+/// The socket that a note names; empty: none, or not one that new_control_path() could have made.
+std::string socket_in(const nlohmann::json& note) {
+    const auto found = note.is_object() ? note.find("socket") : note.end();
+    if (found == note.end() || !found->is_string()) return {};
+    const fs::path socket(found->get<std::string>());
+    const bool ours = socket.is_absolute() && socket.filename() == kSocket &&
+                      socket.parent_path().filename().string().starts_with(kFolder) &&
+                      socket.native().size() < sizeof(sockaddr_un::sun_path);
+    return ours ? socket.string() : std::string();
+}
+
+/// Of a run that was killed: its socket and the private folder around it.
+void remove_left_over(const fs::path& note) {
+    std::ifstream file(note);
+    const std::string socket = socket_in(nlohmann::json::parse(file, nullptr, false));
+    if (socket.empty() || !is_left_over(socket)) return;
+    std::error_code ignored;
+    fs::remove(socket, ignored);
+    fs::remove(fs::path(socket).parent_path(), ignored);
+}
+
+void write_note(const fs::path& note, const nlohmann::json& content) {
+    std::ofstream(note) << content.dump() << '\n';
+}
+
+}  // namespace
+
+std::string new_control_path() {
+    std::random_device source;
+    const std::string name =
+        fmt::format("{}{}-{:08x}{:08x}/{}", kFolder, ::getpid(), source(), source(), kSocket);
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    std::error_code ignored;
+    for (const fs::path& folder : {fs::path(runtime != nullptr ? runtime : ""), fs::path("/tmp")}) {
+        const std::string path = (folder / name).string();
+        if (folder.is_absolute() && fs::is_directory(folder, ignored) &&
+            ::access(folder.c_str(), W_OK) == 0 && path.size() < sizeof(sockaddr_un::sun_path))
+            return path;
+    }
+    return "/tmp/" + name;
+}
+
+ControlPlace::ControlPlace(std::string socket, const fs::path& results)
+    : socket_(std::move(socket)), note_(results / kNote) {
+    std::error_code ignored;
+    remove_left_over(note_);
+    fs::remove(note_, ignored);
+    if (socket_.empty()) return;
+    const std::string folder = fs::path(socket_).parent_path().string();
+    if (::mkdir(folder.c_str(), S_IRWXU) != 0)
+        throw RunError(fmt::format("cannot make {}: {}", folder, std::strerror(errno)));
+    write_note(note_, {{"socket", socket_}});
+}
+
+ControlPlace::~ControlPlace() {
+    if (socket_.empty()) return;
+    std::error_code ignored;
+    fs::remove(socket_, ignored);
+    fs::remove(fs::path(socket_).parent_path(), ignored);
+    try {
+        write_note(note_, {{"ended", true}});
+    } catch (const std::exception&) {  // no place on the disk: the socket is gone all the same
+    }
+}
+
+std::string control_path_of(const std::string& run) {
+    std::error_code ignored;
+    fs::path folder(run);
+    if (!fs::is_directory(folder, ignored)) folder = fs::path("out") / run;
+    if (!fs::is_directory(folder, ignored))
+        throw InputError("", run, "there is no such run", "its results folder, or its name in out/");
+    std::ifstream file(folder / kNote);
+    if (!file) throw InputError("", run, "takes no commands", "a run started with --realtime or --paced");
+    const auto note = nlohmann::json::parse(file, nullptr, false);
+    if (note.is_object() && note.contains("ended") && note["ended"] == true)
+        throw InputError("", run, "the run has ended");
+    const std::string socket = socket_in(note);
+    if (socket.empty())
+        throw InputError((folder / kNote).string(), "", "is damaged", "{\"socket\": \"...\"}");
+    return socket;
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,166 @@
+#include "run/debugging/run_debuggers.h"
+
+#include "run/debugging/debugged_node.h"
+#include "run/factory/node_factory.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <poll.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace puckloop::tools {
+
+namespace {
+
+using nlohmann::json;
+
+/// What cannot go back, and why; empty: all of the run can.
+std::string fixed(const RunSetup& setup, const RunRequest& request) {
+    for (const cosim::NodeSpec& node : setup.nodes)
+        if (node.outside) return node.name + " is a line to the outside, which cannot go back";
+    if (request.realtime || request.paced) return "the run is paced by the wall clock, which cannot go back";
+    if (!request.live.empty()) return "--live has given away what would have to be taken back";
+    return {};
+}
+
+}  // namespace
+
+RunDebuggers::RunDebuggers(const RunSetup& setup, const RunRequest& request,
+                           const volatile std::sig_atomic_t* hurried)
+    : origin_(request.snapshot), hurried_(hurried), no_way_back_(fixed(setup, request)) {
+    for (const cosim::NodeSpec& node : setup.nodes) {
+        const json spec = json::parse(node.json);
+        if (!spec.contains("gdb")) continue;
+        boards_.push_back(std::make_unique<BoardDebugger>(*this, boards_.size(), node.name,
+                                                          spec["gdb"].get<std::string>()));
+    }
+}
+
+std::unique_ptr<cosim::Node> RunDebuggers::make_node(const std::string& text) {
+    const json spec = json::parse(text);
+    if (!spec.contains("gdb")) return tools::make_node(text);
+    const auto debugger = std::find_if(boards_.begin(), boards_.end(), [&](const auto& board) {
+        return board->name() == spec.at("name").get<std::string>();
+    });
+    return make_debugged(make_board(spec), **debugger);
+}
+
+void RunDebuggers::keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,
+                             std::optional<cosim::TraceCsvSink>& record) {
+    if (!no_way_back_.empty()) return;
+    options.save_next = [this](cosim::Time after) { return history_.next(after); };
+    options.save = [this, &trace, &record, to_file = options.save,
+                    at = options.save_at](cosim::RunSnapshot& snapshot) {
+        if (std::find(at.begin(), at.end(), snapshot.time) != at.end()) to_file(snapshot);
+        RunHistory::Place here = place();
+        here.trace = trace->size();
+        if (record) here.record = record->size();
+        history_.take(snapshot, std::move(here));
+    };
+}
+
+RunHistory::Place RunDebuggers::place() const {
+    RunHistory::Place here;
+    for (const auto& board : boards_)
+        here.boards.push_back({board->cycle(), board->changes_made()});
+    return here;
+}
+
+void RunDebuggers::begin_history() {
+    if (!history_.begun()) history_.begin(origin_, place());
+}
+
+const cosim::RunSnapshot* RunDebuggers::begin_again() {
+    const RunHistory::Place& place = history_.place(plan_->instant);
+    for (const auto& board : boards_)
+        board->go_back(place.boards[board->index()].changes);
+    debug::StopControl& stops = boards_[plan_->who]->stops();
+    if (plan_->position)
+        stops.seek_inside(*plan_->position);
+    else
+        stops.search_inside(plan_->step, plan_->limit);
+    kept_.reset();
+    if (plan_->instant > 0) kept_ = place;
+    from_ = history_.snapshot(plan_->instant);
+    return from_.get();
+}
+
+const RunHistory::Place* RunDebuggers::kept() const {
+    return kept_ ? &*kept_ : nullptr;
+}
+
+void RunDebuggers::stand_still(BoardDebugger& who, const debug::Stop& stop, bool inside) {
+    plan_.reset();
+    who.stand(stop, inside);
+    const auto stands = [](const auto& board) { return board->stands(); };
+    while (std::any_of(boards_.begin(), boards_.end(), stands)) {
+        bool any = false;
+        for (const auto& board : boards_)
+            any = board->attend() || any;
+        // The user ends the run at its own terminal, at once.
+        if (hurried_ != nullptr && *hurried_ != 0)
+            for (const auto& board : boards_)
+                board->let_go();
+        else if (!any)
+            wait();
+    }
+}
+
+/// For something to come from a debugger, a tenth of a second at most.
+void RunDebuggers::wait() const {
+    constexpr int kPatienceMs = 100;
+    std::vector<pollfd> asked;
+    for (const auto& board : boards_)
+        asked.push_back({board->descriptor(), POLLIN, 0});
+    ::poll(asked.data(), asked.size(), kPatienceMs);
+}
+
+std::string RunDebuggers::no_way_back(const BoardDebugger& who) const {
+    if (!no_way_back_.empty()) return no_way_back_;
+    for (const auto& board : boards_)
+        if (board.get() != &who && board->stands())
+            return fmt::format("{} stands still at a debugger of its own: let it go on first", board->name());
+    return {};
+}
+
+void RunDebuggers::go_back(BoardDebugger& who, bool step) {
+    const auto instant = history_.before(who.index(), who.cycle());
+    if (!instant) return;
+    for (const auto& board : boards_)
+        board->remember_present();
+    plan_ = Plan{.who = who.index(), .step = step, .instant = *instant, .limit = who.position()};
+    throw cosim::TakenBack{};
+}
+
+void RunDebuggers::stopped(BoardDebugger& who) {
+    if (plan_ && !plan_->position) search_over(who);
+    const debug::Stop stop = plan_ ? plan_->stop : who.stops().stopped().value_or(debug::Stop{});
+    stand_still(who, stop, true);
+}
+
+void RunDebuggers::passed(BoardDebugger& who, cosim::Time until) {
+    if (!plan_ || plan_->who != who.index() || plan_->position) return;
+    // No instruction began at the limit: the chip slept.
+    if (until > who.time_of(plan_->limit / 2)) search_over(who);
+}
+
+void RunDebuggers::search_over(BoardDebugger& who) {
+    const std::uint64_t begin = 2 * history_.place(plan_->instant).boards[who.index()].cycle;
+    if (const auto& found = who.stops().found()) {
+        plan_->position = found->position;
+        plan_->stop = found->stop;
+    } else if (plan_->instant == 0) {
+        plan_->position = begin;
+        plan_->stop = {debug::Stop::Why::Begin};
+    } else {
+        plan_->limit = begin;
+        plan_->instant -= std::min(plan_->instant, plan_->next);
+        plan_->next *= 2;
+    }
+    throw cosim::TakenBack{};
+}
+
+}  // namespace puckloop::tools

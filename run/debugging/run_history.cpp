@@ -1,0 +1,63 @@
+#include "run/debugging/run_history.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace puckloop::tools {
+
+using cosim::RunSnapshot;
+using cosim::Time;
+using cosim::WireState;
+
+void RunHistory::begin(std::shared_ptr<const RunSnapshot> origin, Place place) {
+    last_ = origin ? origin->time : 0;
+    instants_.push_back({std::move(place), std::move(origin), {}});
+}
+
+Time RunHistory::next(Time time) const {
+    return std::max(last_, time) + interval_;
+}
+
+void RunHistory::take(RunSnapshot& snapshot, Place place) {
+    if (snapshot.time <= last_) return;  // for a file, in the past
+    last_ = snapshot.time;
+    carried_ = std::exchange(snapshot.wires, {});
+    Instant instant{std::move(place), nullptr, {}};
+    for (const WireState& wire : carried_) {
+        instant.wires.push_back({wire.sent.length(), wire.arrived.size()});
+        snapshot.wires.push_back({wire.sequence, wire.brought_back, wire.faulty, {}, {}});
+    }
+    instant.snapshot = std::make_shared<const RunSnapshot>(std::move(snapshot));
+    instants_.push_back(std::move(instant));
+    if (instants_.size() > kMost) thin_out();
+}
+
+/// The first stays.
+void RunHistory::thin_out() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < instants_.size(); i += 2)
+        if (kept++ != i) instants_[kept - 1] = std::move(instants_[i]);
+    instants_.resize(kept);
+    interval_ *= 2;
+}
+
+std::optional<std::size_t> RunHistory::before(std::size_t board, std::uint64_t cycle) const {
+    for (std::size_t i = instants_.size(); i > 0; --i)
+        if (instants_[i - 1].place.boards[board].cycle < cycle) return i - 1;
+    return std::nullopt;
+}
+
+std::shared_ptr<const RunSnapshot> RunHistory::snapshot(std::size_t instant) const {
+    const Instant& one = instants_[instant];
+    if (instant == 0) return one.snapshot;
+    auto whole = std::make_shared<RunSnapshot>(*one.snapshot);
+    for (std::size_t w = 0; w < whole->wires.size(); ++w) {
+        const Instant::Wire& length = one.wires[w];
+        whole->wires[w].sent = carried_[w].sent.beginning(length.sent);
+        const auto first = carried_[w].arrived.begin();
+        whole->wires[w].arrived.assign(first, first + static_cast<std::ptrdiff_t>(length.arrived));
+    }
+    return whole;
+}
+
+}  // namespace puckloop::tools

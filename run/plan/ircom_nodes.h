@@ -1,0 +1,13 @@
+#pragma once
+// IRcom's infra-red medium in a run: there where a scenario asks for it, or has both robots and TAMs.
+
+#include "run/plan/setup.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace puckloop::tools {
+
+/// The medium and its links to every robot's main board and every TAM, which are there already.
+void add_ircom(RunSetup& setup, const nlohmann::json& world);
+
+}  // namespace puckloop::tools

@@ -1,0 +1,86 @@
+#include "run/plan/overrides.h"
+
+#include "base/error.h"
+#include "run/plan/program_path.h"
+#include "scenarios/reader/events/event_tables.h"
+#include "scenarios/reader/faults/fault_tables.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace puckloop::tools {
+
+using scenarios::RobotBoards;
+using scenarios::Scenario;
+
+namespace {
+
+struct BoardPlace {
+    std::string name;  ///< "robot0.pic", "tam0"
+    const char* kind;  ///< all of them
+    std::filesystem::path* firmware;
+};
+
+/// Every board with firmware.
+std::vector<BoardPlace> boards_of(Scenario& scenario) {
+    std::vector<BoardPlace> boards;
+    for (RobotBoards& robot : scenario.robots) {
+        boards.push_back({robot.name + ".pic", "pic", &robot.pic.firmware});
+        if (robot.rab) boards.push_back({robot.name + ".rab", "rab", &robot.rab->firmware});
+    }
+    for (scenarios::TamBoard& tam : scenario.tams)
+        boards.push_back({tam.name, "tam", &tam.firmware});
+    return boards;
+}
+
+/// "robot0.pic=x.hex", "tam0=x.elf", or "pic=x.hex" for all of a kind.
+void replace_firmware(Scenario& scenario, const std::string& assignment) {
+    const auto equals = assignment.find('=');
+    const char* problem = equals == std::string::npos       ? "is not an assignment"
+                          : equals == 0                     ? "names no board"
+                          : equals + 1 == assignment.size() ? "names no image file"
+                                                            : nullptr;
+    if (problem != nullptr)
+        throw InputError("", "--firmware", fmt::format("'{}' {}", assignment, problem), "BOARD=IMAGE");
+    const std::string wanted = assignment.substr(0, equals);
+    const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
+    std::string known;
+    bool found = false;
+    for (const auto& [board, kind, firmware] : boards_of(scenario)) {
+        known += board + ", ";
+        if (wanted != board && wanted != kind) continue;
+        *firmware = image;
+        found = true;
+    }
+    if (!found)
+        throw InputError("", "--firmware", fmt::format("the scenario has no board '{}'", wanted),
+                         "one of " + known + "or pic, rab or tam for all");
+}
+
+}  // namespace
+
+void apply(const RunRequest& request, Scenario& scenario) {
+    for (const std::string& assignment : request.firmware)
+        replace_firmware(scenario, assignment);
+    if (!request.linux_command.empty()) {
+        for (RobotBoards& robot : scenario.robots) {
+            if (!robot.linux_board) robot.linux_board.emplace().hostname = robot.name;
+            robot.linux_board->command = request.linux_command;
+            robot.linux_board->command[0] = find_program(request.linux_command[0], ".").string();
+        }
+    }
+    if (request.duration) scenario.duration = request.duration;
+    if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
+    if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
+    for (const std::string& words : request.faults)
+        scenarios::add_fault(words, scenario);
+    if (!request.events.empty()) {
+        scenario.events.events = scenarios::read_event_file(request.events);
+        physics::check_events(scenario.events, scenario.world);
+    }
+}
+
+}  // namespace puckloop::tools

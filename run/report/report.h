@@ -1,0 +1,30 @@
+#pragma once
+// report.json: what a run did, for people and for programs.
+
+#include "cosim/conductor.h"
+#include "run/plan/setup.h"
+#include "run/report/reserved_file.h"
+
+#include <string>
+
+namespace puckloop::tools {
+
+/// What to take on disk for the report before the run; one of eight robots with all boards has about a third.
+inline constexpr std::size_t kReportBytes = 262'144;
+
+/// Writes report.json; throws RunError if the disk does not take it.
+void write_report(const RunSetup& setup, const cosim::Outcome& outcome, ReservedFile& file);
+
+/// Warnings of the setup, of the run and of its nodes, these with the node's name before them.
+std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome& outcome);
+
+/// A run that lasted as long as it should has failed nevertheless if a program never touched its robot.
+void judge(cosim::Outcome& outcome);
+
+/// A run with warnings has failed, where the user asked for it.
+void judge_strictly(const RunSetup& setup, cosim::Outcome& outcome);
+
+/// A few lines for the terminal: how it ended, how fast, what to look at.
+std::string summary(const RunSetup& setup, const cosim::Outcome& outcome);
+
+}  // namespace puckloop::tools

@@ -1,0 +1,242 @@
+#include "run/run_scenario.h"
+
+#include "base/error.h"
+#include "cosim/resume/run_snapshot.h"
+#include "cosim/trace/trace_csv.h"
+#include "physics/render/trajectory_svg.h"
+#include "run/control/control_place.h"
+#include "run/debugging/run_debuggers.h"
+#include "run/factory/node_factory.h"
+#include "run/factory/preflight.h"
+#include "run/report/fault_results.h"
+#include "run/report/live_trace.h"
+#include "run/report/report.h"
+#include "run/report/results_folder.h"
+#include "run/report/run_diary.h"
+#include "run/snapshots/snapshot_plan.h"
+#include "run/states/state_plan.h"
+
+#include <fmt/format.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <thread>
+
+namespace puckloop::tools {
+
+namespace {
+
+/// The world with what its events added, for the picture.
+physics::World with_added_things(const scenarios::Scenario& scenario) {
+    physics::World world = scenario.world;
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    for (const physics::Event& event : scenario.events.events) {
+        append(world.boxes, event.action.thing.boxes);
+        append(world.cylinders, event.action.thing.cylinders);
+    }
+    return world;
+}
+
+/// Report and picture are made even if the run failed; of what goes wrong with them then only a missing
+/// report is news.
+void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile& report) {
+    const auto guarded = [&](auto work) {
+        try {
+            work();
+        } catch (const RunError& error) {
+            if (outcome.success) outcome.text = error.what();
+            outcome.success = false;
+        }
+    };
+    bool drawn = false;
+    guarded([&] {
+        physics::write_trajectory_svg(with_added_things(setup.scenario), setup.out);
+        drawn = true;
+    });
+    std::error_code ignored;
+    if (!drawn) std::filesystem::remove(setup.out / "trajectory.svg", ignored);  // no half a picture
+    guarded([&] {
+        if (!outcome.faults.empty()) write_faults_csv(outcome, setup.out / "faults.csv");
+    });
+    try {
+        write_report(setup, outcome, report);
+    } catch (const RunError& error) {
+        outcome.text = outcome.success ? error.what() : fmt::format("{}; {}", outcome.text, error.what());
+        outcome.success = false;
+    }
+}
+
+/// Robots in one process take some six descriptors each; the usual soft limit of 1024 is not meant for them.
+void raise_descriptor_limit() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+/// Every name that nodes and the run itself may give a file in the results folder.
+std::vector<std::string> result_files(const RunSetup& setup) {
+    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
+                                   "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
+                                   "tams.csv",       "faults.csv",       "record.csv",  "trace.sr",
+                                   "trace.vcd",      "trace.pcapng"};
+    for (const cosim::NodeSpec& node : setup.nodes)
+        for (const char* kind : {".log", ".received"})
+            names.push_back(node.name + kind);
+    for (const scenarios::RobotBoards& robot : setup.scenario.robots) {
+        for (const char* ending : {"csv", "ppm"})
+            names.push_back(robot.name + ".pic.camera." + ending);
+        if (robot.linux_board)
+            for (const scenarios::LinuxCamera& camera : robot.linux_board->cameras)
+                names.push_back(robot.name + "." + camera.kind + ".csv");
+    }
+    return names;
+}
+
+void end_live(LiveTrace& live, cosim::Outcome& outcome) {
+    try {
+        live.end();
+    } catch (const RunError& error) {
+        if (outcome.success) outcome.text = error.what();
+        outcome.success = false;
+    }
+}
+
+/// Into files that are new, or hold what is kept of a run that goes back.
+void begin_recording(const RunSetup& setup, const RunRequest& request, const RunHistory::Place* kept,
+                     std::optional<cosim::TraceCsvSink>& trace, std::optional<cosim::TraceCsvSink>& record) {
+    if (kept != nullptr) {
+        trace->cut_back(kept->trace);
+        if (record) record->cut_back(kept->record);
+        return;
+    }
+    trace.emplace((setup.out / "trace.csv").string());
+    if (request.snapshot) trace->begin_with(request.snapshot->trace);
+    if (request.record) record.emplace((setup.out / "record.csv").string(), cosim::TraceCsvSink::Rows::All);
+}
+
+/// With few boards there is little to do side by side beside the world's step: whether that pays is tried.
+void set_threads(cosim::RunOptions& options, const RunSetup& setup, const RunRequest& request) {
+    constexpr unsigned kBoardsOfThread = 4, kMost = 4;
+    options.threads = 1;
+    if (!request.in_process) return;
+    const auto& robots = setup.scenario.robots;
+    const auto has_rab = [](const auto& robot) { return robot.rab.has_value(); };
+    const auto boards = static_cast<unsigned>(robots.size() + setup.scenario.tams.size()) +
+                        static_cast<unsigned>(std::count_if(robots.begin(), robots.end(), has_rab));
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    options.threads = std::clamp(boards / kBoardsOfThread, 1U, std::min(cores, kMost));
+    if (options.threads == 1 && cores > 1 && !options.realtime) {
+        options.threads = 2;
+        options.threads_if_faster = true;
+    }
+    if (request.threads == 0) return;
+    options.threads = request.threads;
+    options.threads_if_faster = false;
+}
+
+}  // namespace
+
+void make_work_folders(const RunSetup& setup) {
+    std::vector<std::string> names;
+    for (const auto& robot : setup.scenario.robots)
+        if (robot.linux_board) names.push_back(robot.linux_board->folder);
+    if (const auto& place = setup.scenario.coordinator; place && place->program)
+        names.push_back(place->program->folder);
+    for (const std::string& name : names) {
+        if (name.empty()) continue;
+        const auto folder = setup.out / name;
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error) throw InputError(folder.string(), "", "cannot be made a folder: " + error.message());
+    }
+}
+
+cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
+                            const std::function<void(const cosim::Progress&)>& progress,
+                            const cosim::InterruptGuard* interrupt) {
+    check_files(setup);
+    const ResultsFolder folder(setup.out, result_files(setup));
+    make_work_folders(setup);
+    ReservedFile report(setup.out / "report.json", kReportBytes);
+
+    std::error_code ignored;
+    if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", ignored);
+    const ControlPlace control(setup.control, setup.out);
+    raise_descriptor_limit();
+    cosim::RunOptions options;
+    if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
+    options.in_process = request.in_process;
+    options.realtime = request.realtime || request.paced;
+    options.pace_from = setup.ready;
+    set_threads(options, setup, request);
+    options.seed = setup.scenario.seed;
+    constexpr double kPatience = 1e9;  // a board under a debugger is silent for as long as its user thinks
+    options.stall_seconds = request.gdb.empty() ? request.stall_seconds : kPatience;
+    if (interrupt != nullptr) {
+        options.interrupted = interrupt->flag();
+        options.hurried = interrupt->again();
+    }
+    RunDiary diary(setup, request);
+    options.progress = [&](const cosim::Progress& now) {
+        diary.progress(now);
+        if (progress) progress(now);
+    };
+    // Before anything is started: a named pipe may have to wait for its reader.
+    std::optional<LiveTrace> live;
+    if (!request.live.empty()) live.emplace(request.live, options.interrupted);
+    std::optional<cosim::TraceCsvSink> trace;
+    use_snapshots(setup, request, trace, options);
+    std::optional<cosim::TraceCsvSink> record;
+    std::optional<RunDebuggers> debuggers;
+    cosim::NodeFactory factory = make_node;
+    if (!request.gdb.empty()) {
+        debuggers.emplace(setup, request, options.hurried);
+        debuggers->keep_past(options, trace, record);
+        factory = [&](const std::string& node) { return debuggers->make_node(node); };
+    }
+    cosim::Outcome outcome;
+    do {
+        const bool back = outcome.reason == cosim::EndReason::TakenBack;
+        if (back) options.from = debuggers->begin_again();
+        std::optional<cosim::Conductor> conductor;
+        try {
+            conductor.emplace(setup.nodes, setup.links, setup.scenario.faults, options, factory);
+        } catch (const RunError& error) {  // why it did not begin is in the report, as of one that ended so
+            outcome = {};
+            outcome.reason = cosim::EndReason::Failed;
+            outcome.success = false;
+            outcome.text = error.what();
+            break;
+        }
+        // Only now: a run whose nodes do not start has recorded nothing.
+        begin_recording(setup, request, back ? debuggers->kept() : nullptr, trace, record);
+        conductor->add_sink(*trace);
+        if (record) conductor->add_sink(*record);
+        if (live) conductor->add_sink(*live);
+        diary.started(*conductor);
+        outcome = conductor->run();
+    } while (outcome.reason == cosim::EndReason::TakenBack);
+    if (live) end_live(*live, outcome);
+    if (outcome.reason == cosim::EndReason::Interrupted) {
+        outcome.success = false;
+        outcome.text =
+            fmt::format("interrupted (SIG{}) at {:.3f} s of simulated time", sigabbrev_np(*interrupt->flag()),
+                        cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
+    }
+    if (!request.from.empty() && !outcome.went_on) outcome.text = request.from.string() + ": " + outcome.text;
+    judge(outcome);
+    take_fault_results(setup, outcome);
+    collect_states(setup, outcome);
+    judge_snapshots(request, outcome);
+    if (request.strict) judge_strictly(setup, outcome);
+    diary.ended(outcome);
+    write_results(setup, outcome, report);
+    diary.written();
+    return outcome;
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,21 @@
+#pragma once
+// One run from its setup to its outcome, without output: what `run` and `bench` share.
+
+#include "cosim/conductor.h"
+#include "cosim/interrupt.h"
+#include "run/plan/setup.h"
+
+#include <functional>
+
+namespace puckloop::tools {
+
+/// The folders below the results that programs work in. Throws InputError.
+void make_work_folders(const RunSetup& setup);
+
+/// Runs, records trace.csv in the run's folder (made if absent), writes report.json and draws trajectory.svg.
+/// Throws InputError before the run; what happens during it is in the outcome. `interrupt` may be null.
+cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
+                            const std::function<void(const cosim::Progress&)>& progress,
+                            const cosim::InterruptGuard* interrupt);
+
+}  // namespace puckloop::tools

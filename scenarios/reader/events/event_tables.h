@@ -1,0 +1,21 @@
+#pragma once
+// [[event]] tables of a scenario, and the same actions from a command.
+
+#include "physics/events/event.h"
+#include "scenarios/reader/reader.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace puckloop::scenarios {
+
+/// The [[event]] tables. What they name is checked by physics::check_events(), later.
+std::vector<physics::Event> read_events(Reader& top);
+
+/// A file of [[event]] tables and nothing else (`--events`). Throws InputError.
+std::vector<physics::Event> read_event_file(const std::filesystem::path& file);
+
+/// One command, such as "move can to 10 cm, 0 cm". Throws InputError.
+physics::Action parse_command(std::string_view text);
+
+}  // namespace puckloop::scenarios

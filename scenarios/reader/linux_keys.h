@@ -1,0 +1,16 @@
+#pragma once
+// The keys of a Linux program: [robot.linux], [coordinator], and an overlay's [linux].
+
+#include "scenarios/reader/reader.h"
+#include "scenarios/reader/scenario.h"
+
+namespace puckloop::scenarios {
+
+/// Program, host name, times, folder, signals and lateness; what is absent stays as `board` has it. Throws
+/// InputError with the line.
+void read_program(Reader& reader, LinuxBoard& board);
+
+/// Those that are absent leave `late` as it is.
+void read_lateness(Reader& reader, LinuxLateness& late);
+
+}  // namespace puckloop::scenarios

@@ -1,0 +1,108 @@
+#include "scenarios/reader/quantity.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::scenarios {
+
+namespace {
+
+struct Unit {
+    std::string_view name;
+    Dimension dimension;
+    double si;  ///< one of it, in the SI unit
+};
+
+constexpr std::array kUnits{
+    Unit{"s", Dimension::Time, 1.0},        Unit{"ms", Dimension::Time, 1e-3},
+    Unit{"us", Dimension::Time, 1e-6},      Unit{"min", Dimension::Time, 60.0},
+    Unit{"h", Dimension::Time, 3600.0},     Unit{"m", Dimension::Length, 1.0},
+    Unit{"cm", Dimension::Length, 1e-2},    Unit{"mm", Dimension::Length, 1e-3},
+    Unit{"rad", Dimension::Angle, 1.0},     Unit{"deg", Dimension::Angle, std::numbers::pi / 180.0},
+    Unit{"kg", Dimension::Mass, 1.0},       Unit{"g", Dimension::Mass, 1e-3},
+    Unit{"Hz", Dimension::Frequency, 1.0},  Unit{"kHz", Dimension::Frequency, 1e3},
+    Unit{"MHz", Dimension::Frequency, 1e6}, Unit{"V", Dimension::Voltage, 1.0},
+    Unit{"mV", Dimension::Voltage, 1e-3},   Unit{"N", Dimension::Force, 1.0},
+    Unit{"Nm", Dimension::Torque, 1.0},     Unit{"mNm", Dimension::Torque, 1e-3},
+    Unit{"%", Dimension::Ratio, 1e-2},      Unit{"ppm", Dimension::Ratio, 1e-6},
+};
+
+struct DimensionText {
+    std::string_view noun;
+    std::string_view example;
+};
+
+DimensionText text_of(Dimension dimension) {
+    switch (dimension) {
+    case Dimension::Time:
+        return {"a time", "a time such as \"20 ms\""};
+    case Dimension::Length:
+        return {"a length", "a length such as \"25 cm\""};
+    case Dimension::Angle:
+        return {"an angle", "an angle such as \"45 deg\""};
+    case Dimension::Mass:
+        return {"a mass", "a mass such as \"150 g\""};
+    case Dimension::Frequency:
+        return {"a frequency", "a frequency such as \"7.3728 MHz\""};
+    case Dimension::Voltage:
+        return {"a voltage", "a voltage such as \"3.7 V\""};
+    case Dimension::Force:
+        return {"a force", "a force such as \"1.5 N\""};
+    case Dimension::Torque:
+        return {"a torque", "a torque such as \"20 mNm\""};
+    case Dimension::Ratio:
+        return {"a ratio", "a ratio such as 0.5, \"50 %\" or \"20 ppm\""};
+    case Dimension::Number:
+        return {"a number", "a plain number such as 0.5"};
+    }
+    return {};
+}
+
+std::string units_of(Dimension dimension) {
+    std::string list;
+    for (const Unit& unit : kUnits)
+        if (unit.dimension == dimension) list += fmt::format("{}{}", list.empty() ? "" : ", ", unit.name);
+    return list;
+}
+
+}  // namespace
+
+std::string_view example_of(Dimension dimension) {
+    return text_of(dimension).example;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension) {
+    const std::string expected(example_of(dimension));
+    const auto trim = [](std::string_view s) {
+        while (!s.empty() && s.front() == ' ')
+            s.remove_prefix(1);
+        while (!s.empty() && s.back() == ' ')
+            s.remove_suffix(1);
+        return s;
+    };
+    std::string_view rest = trim(text);
+    if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error != std::errc{} || !std::isfinite(value))
+        throw QuantityError{fmt::format("'{}' does not begin with a number", text), expected};
+    const std::string_view unit_name = trim(rest.substr(static_cast<std::size_t>(end - rest.data())));
+    if (unit_name.empty()) {
+        if (dimension == Dimension::Ratio || dimension == Dimension::Number) return value;
+        throw QuantityError{fmt::format("'{}' has no unit", text), expected};
+    }
+    for (const Unit& unit : kUnits) {
+        if (unit.name != unit_name) continue;
+        if (unit.dimension == dimension) return value * unit.si;
+        throw QuantityError{fmt::format("'{}' is {}", text, text_of(unit.dimension).noun), expected};
+    }
+    if (dimension == Dimension::Number)
+        throw QuantityError{fmt::format("'{}' has a unit where none belongs", text), expected};
+    throw QuantityError{fmt::format("unknown unit '{}'", unit_name), "one of " + units_of(dimension)};
+}
+
+}  // namespace puckloop::scenarios

@@ -1,0 +1,17 @@
+#pragma once
+// The [[robot]] tables of a scenario.
+
+#include "base/toml_file.h"
+#include "scenarios/reader/reader.h"
+#include "scenarios/reader/scenario.h"
+
+#include <filesystem>
+#include <string>
+
+namespace puckloop::scenarios {
+
+/// Reads one robot and adds it, boards and body. Throws InputError with file and line.
+void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
+                Scenario& scenario);
+
+}  // namespace puckloop::scenarios

@@ -1,0 +1,37 @@
+#pragma once
+// The frames of a recorded trace by protocol, with what is wrong in them.
+//
+// Which protocol a UART speaks is read from the names of its ends: an XBee module ("tam0.xbee"), a robot's
+// main board ("robot0.pic"); anything else is shown as bytes sent without a pause.
+
+#include "traces/recorded_trace.h"
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+struct DecodedFrame {
+    cosim::Time begin = 0;  ///< first bit on the line or air
+    cosim::Time end = 0;    ///< the last bit is there
+    std::string link, from;
+    std::string
+        protocol;  ///< "epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "mesh", "rab", "ircom", "fault"
+    std::string text;
+    std::vector<std::string> errors;  ///< what is wrong with it, and what faults did to it
+    nlohmann::ordered_json fields = nlohmann::ordered_json::object();
+};
+
+using TakeFrame = std::function<void(const DecodedFrame&)>;
+
+/// Hands over frames in the order in which they were complete.
+void decode_trace(const RecordedTrace& trace, const TakeFrame& take);
+
+/// One line each, without the line end.
+std::string to_text(const DecodedFrame& frame);
+std::string to_json(const DecodedFrame& frame);
+
+}  // namespace puckloop::tools

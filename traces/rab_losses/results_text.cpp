@@ -1,0 +1,105 @@
+// The losses of a run as text and as JSON.
+
+#include "traces/rab_losses/results.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace puckloop::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Column heads of the table, in the order of Cause.
+constexpr std::array<std::string_view, kCauses> kHeads{"dark",   "queue",   "collide", "peaks", "i2c rx",
+                                                       "i2c tx", "sending", "error",   "other"};
+
+std::string row_of(const RabGroup& group) {
+    std::string text = fmt::format("{:22} {:>7} {:>9} {:>6.3f} {:>7.1f} ", group.name, group.frames,
+                                   group.delivered, group.share(), group.distance * 100.0);
+    for (const std::size_t lost : group.lost)
+        text += fmt::format(" {:>7}", lost);
+    return text + '\n';
+}
+
+std::size_t frames_on_air(const RabResults& results, const std::string& sender) {
+    const auto found = results.on_air.find(sender);
+    return found == results.on_air.end() ? 0 : found->second;
+}
+
+std::size_t messages_of(const BoardTraffic& traffic) {
+    std::size_t count = 0;
+    for (const Poll& poll : traffic.polls)
+        count += poll.message ? 1 : 0;
+    return count;
+}
+
+std::uint64_t unexplained_of(const Losses& losses, const std::string& robot) {
+    const auto found = losses.unexplained.find(robot);
+    return found == losses.unexplained.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+std::string to_text(const RabResults& results, double bin) {
+    std::string text =
+        fmt::format("{:22} {:>7} {:>9} {:>6} {:>7}  lost, by cause\n{:22} {:>7} {:>9} {:>6} {:>7} ", "",
+                    "frames", "delivered", "share", "mean cm", "", "", "", "", "");
+    for (const std::string_view head : kHeads)
+        text += fmt::format(" {:>7}", head);
+    text += '\n';
+    const auto groups = groups_of(results.losses, bin);
+    for (const RabGroup& group : groups)
+        text += row_of(group);
+    text += fmt::format("{:22} {:>7} {:>9} {:>6.3f}\n\n", "seed simulator", "", "", kSeedDelivered);
+    text += fmt::format("{:22} {:>7} {:>9}\n", "condition (all frames)", "met by", "lost");
+    for (std::size_t c = 0; c + 1 < kCauses; ++c)
+        text += fmt::format("{:22} {:>7} {:>9}\n", name_of(static_cast<Cause>(c)), groups[0].met[c],
+                            groups[0].met_lost[c]);
+    text += fmt::format("\n{:22} {:>7} {:>9} {:>7} {:>9} {:>8} {:>11}\n", "board", "asked", "on air", "polls",
+                        "median ms", "messages", "unexplained");
+    for (const auto& [robot, traffic] : results.boards)
+        text +=
+            fmt::format("{:22} {:>7} {:>9} {:>7} {:>9.2f} {:>8} {:>11}\n", robot, traffic.sends.size(),
+                        frames_on_air(results, robot), traffic.polls.size(), poll_period(traffic.polls) * 1e3,
+                        messages_of(traffic), unexplained_of(results.losses, robot));
+    return text;
+}
+
+std::string to_json(const RabResults& results, double bin) {
+    ordered_json groups = ordered_json::array();
+    for (const RabGroup& group : groups_of(results.losses, bin)) {
+        ordered_json lost, met;
+        for (std::size_t c = 0; c < kCauses; ++c) {
+            const std::string name(name_of(static_cast<Cause>(c)));
+            lost[name] = group.lost[c];
+            if (static_cast<Cause>(c) != Cause::Other)
+                met[name] = {{"frames", group.met[c]}, {"lost", group.met_lost[c]}};
+        }
+        groups.push_back({{"group", group.name},
+                          {"frames", group.frames},
+                          {"delivered", group.delivered},
+                          {"share", group.share()},
+                          {"distance_m", group.distance},
+                          {"lost_by_cause", lost},
+                          {"conditions", met}});
+    }
+    ordered_json boards;
+    for (const auto& [robot, traffic] : results.boards)
+        boards[robot] = {{"sends_asked", traffic.sends.size()},
+                         {"frames_on_air", frames_on_air(results, robot)},
+                         {"polls", traffic.polls.size()},
+                         {"poll_period_s", poll_period(traffic.polls)},
+                         {"messages", messages_of(traffic)},
+                         {"unexplained_messages", unexplained_of(results.losses, robot)}};
+    return ordered_json{{"from_s", results.from_s},
+                        {"to_s", results.to_s},
+                        {"seed_delivered", kSeedDelivered},
+                        {"groups", groups},
+                        {"boards", boards}}
+               .dump(2) +
+           "\n";
+}
+
+}  // namespace puckloop::tools
