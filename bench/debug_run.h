@@ -21,7 +21,7 @@ class DebugRun final : private debug::Debuggee {
     /// Waits for a debugger, then does what it wants, up to the budget. `paced`: by the wall clock.
     Bench::End run(cosim::Time budget, bool paced);
     /// The run has ended with this exit status.
-    void over(int status) { session_.over(status); }
+    void on_exit(int status) { session_.on_exit(status); }
 
   private:
     debug::DebugChip& chip() override { return *chip_; }

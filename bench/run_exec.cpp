@@ -252,7 +252,7 @@ int run_exec(const ExecOptions& options) {
         if (!warnings.empty()) outcome.failure = "with --strict a warning is a failure: " + warnings.front();
     }
 
-    if (debugger) debugger->over(outcome.success ? 0 : 1);
+    if (debugger) debugger->on_exit(outcome.success ? 0 : 1);
     // Standard output belongs to the UART when `-` stands there; JSON is then its last line.
     if (options.json)
         std::printf("%s%s\n", stdio ? "\n" : "", json_report(bench, image, outcome).c_str());

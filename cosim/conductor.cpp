@@ -99,9 +99,9 @@ Outcome Conductor::State::run() {
                                        to_seconds(stop_->time), stop_->reason);
             outcome.success = stop_->success;
         }
-    } catch (const TakenBack&) {
+    } catch (const Reverted&) {
         workers_->stop();
-        outcome.reason = EndReason::TakenBack;
+        outcome.reason = EndReason::Reverted;
         return outcome;
     } catch (const Interrupted&) {
         outcome.reason = EndReason::Interrupted;
@@ -124,7 +124,7 @@ void Conductor::State::loop() {
     while (true) {
         take_interrupt();
         surprised_.clear();
-        said_.clear();
+        replied_.clear();
         plan_begun_ = WallClock::now();
         plan();
         if (schedule_.complete()) return;
@@ -166,16 +166,16 @@ bool Conductor::State::follow_up() {
 
 /// Adds to following_ the nodes of those buses of which one has replied.
 void Conductor::State::take_turns() {
-    for (const std::size_t n : said_) {
-        const std::size_t group = schedule_.chats().group_of(n);
+    for (const std::size_t n : replied_) {
+        const std::size_t group = schedule_.bus_turns().group_of(n);
         if (group == kNobody) continue;
-        for (const std::size_t other : schedule_.chats().nodes(group))
+        for (const std::size_t other : schedule_.bus_turns().nodes(group))
             if (!times_[other].busy && slots_[other].stale) find_unknown(other);
         schedule_.listen(group, times_);
-        const auto& nodes = schedule_.chats().nodes(group);
+        const auto& nodes = schedule_.bus_turns().nodes(group);
         following_.insert(following_.end(), nodes.begin(), nodes.end());
     }
-    said_.clear();
+    replied_.clear();
 }
 
 void Conductor::State::chop(std::size_t n, Time& until, Time& ahead) {
@@ -191,7 +191,7 @@ void Conductor::State::chop(std::size_t n, Time& until, Time& ahead) {
 }
 
 void Conductor::State::take_interrupt() {
-    if (options_.hurried && *options_.hurried) throw Interrupted{};
+    if (options_.abort_requested && *options_.abort_requested) throw Interrupted{};
     if (interrupted_at_ || !options_.interrupted || !*options_.interrupted) return;
     // The first instant that is in nobody's past: what is foreseen may be final already.
     interrupted_at_ = network_->after_settled();
@@ -222,12 +222,13 @@ void Conductor::State::report_progress() {
     const double wall = seconds_since(start_);
     if (processes_) processes_->cores().step(wall, schedule_.reached(), grants_);
     if (thread_trial_) workers_->set_resting(!thread_trial_->step(wall, schedule_.reached(), grants_));
-    if (wall - told_wall_ >= kProgressSeconds) {
+    if (wall - last_progress_wall_ >= kProgressSeconds) {
         const Time time = schedule_.reached();
         if (options_.progress)
-            options_.progress({time, wall, to_seconds(time - told_time_) / (wall - told_wall_)});
-        told_wall_ = wall;
-        told_time_ = time;
+            options_.progress(
+                {time, wall, to_seconds(time - last_progress_time_) / (wall - last_progress_wall_)});
+        last_progress_wall_ = wall;
+        last_progress_time_ = time;
     }
     if (wall - flushed_wall_ >= kFlushSeconds && !writing_) {
         release_trace(std::min(schedule_.bounds().floor(), end_));

@@ -46,7 +46,7 @@ struct RunOptions {
     unsigned threads = 1;            ///< of this process, for nodes that any thread may advance
     bool threads_if_faster = false;  ///< more than one work only while that is faster
     double stall_seconds = 10.0;     ///< a node process that does not answer for so long ends the run
-    /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
+    /// A node's request to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
     /// Starts a process that serves one node (cosim/remote/node_server.h) on descriptors 3 and 4; in place of
     /// the program's name it gets "puckloop: " and the node's, which is what ps shows.
@@ -67,15 +67,15 @@ struct RunOptions {
     /// (cosim/interrupt.h).
     const volatile std::sig_atomic_t* interrupted = nullptr;
     /// Set by a second signal: ends the run at once.
-    const volatile std::sig_atomic_t* hurried = nullptr;
+    const volatile std::sig_atomic_t* abort_requested = nullptr;
 };
 
-enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed, TakenBack };
+enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed, Reverted };
 
 /// Thrown out of the advance() of a node in the conductor's process: the run is given up as it stands, for
 /// its owner to begin it again from a snapshot. Nodes are not finished, and the outcome states
-/// EndReason::TakenBack and nothing else.
-struct TakenBack {};
+/// EndReason::Reverted and nothing else.
+struct Reverted {};
 
 struct Outcome {
     EndReason reason = EndReason::Duration;

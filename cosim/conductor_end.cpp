@@ -1,4 +1,4 @@
-// How a run ends: a node's wish, a deadlock, a failure; and what is reported of it.
+// How a run ends: a node's request, a deadlock, a failure; and what is reported of it.
 
 #include "base/error.h"
 #include "cosim/conductor_state.h"
@@ -14,11 +14,11 @@ void Conductor::State::take_stop(std::size_t n, Time before) {
     if (!stop || slots_[n].stop_seen) return;
     slots_[n].stop_seen = true;
     // Nobody has been granted more than the stop latency beyond `before`, so this end is in nobody's past.
-    Stop wish = *stop;
-    wish.time = std::max(wish.time, before);
-    if (wish.together <= 1) return end_with(wish, n);
-    stop_requests_.emplace_back(wish, n);
-    if (stop_requests_.size() < wish.together) return;
+    Stop request = *stop;
+    request.time = std::max(request.time, before);
+    if (request.together <= 1) return end_with(request, n);
+    stop_requests_.emplace_back(request, n);
+    if (stop_requests_.size() < request.together) return;
     const auto last =
         std::max_element(stop_requests_.begin(), stop_requests_.end(), [](const auto& a, const auto& b) {
             return std::pair(a.first.time, a.second) < std::pair(b.first.time, b.second);

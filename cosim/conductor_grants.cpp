@@ -24,7 +24,7 @@ void Conductor::State::find_unknown(std::size_t n) {
     for (const TraceRecord& record : slot.queue) {
         if (record.time < node.ahead) continue;
         slot.unknown = std::min(slot.unknown, record.time);
-        if (network_->chats(record)) node.heard = std::min(node.heard, record.time);
+        if (network_->takes_turns(record)) node.heard = std::min(node.heard, record.time);
     }
     slot.stale = false;
 }
@@ -87,7 +87,7 @@ void Conductor::State::take_reply(std::size_t n) {
     const NodeState& state = handles_[n]->state();
     const bool ran_ahead = std::exchange(node.runs_ahead, may_run_ahead(n));
     node.horizon = state.horizon;
-    said_.push_back(n);
+    replied_.push_back(n);
     slot.asked = done.reached;
     slot.asked_ahead = done.ahead;
     Time first_in = slot.unknown < done.ahead ? slot.unknown : kNever;

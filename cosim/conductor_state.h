@@ -138,8 +138,8 @@ class Conductor::State {
     std::vector<LinkStats> stats_;        ///< one a wire
     std::vector<std::size_t> surprised_;  ///< since the plan
     std::vector<std::size_t> following_;
-    std::vector<std::size_t> said_;  ///< nodes that have replied since the plan or the last look
-    bool others_run_ahead_ = false;  ///< some node has that may go as far as it likes
+    std::vector<std::size_t> replied_;  ///< nodes that have replied since the plan or the last look
+    bool others_run_ahead_ = false;     ///< some node has that may go as far as it likes
     TraceMerger merger_;
     TraceHash hash_;
     std::vector<TraceRecord> batch_;    ///< being written by whatever thread
@@ -173,9 +173,9 @@ class Conductor::State {
     WallClock::time_point start_{};
     WallClock::time_point plan_begun_{}, planned_at_{};  ///< the last plan and its grants
     std::optional<WallClock::time_point> paced_since_;   ///< RunOptions::pace_from was reached
-    double told_wall_ = 0.0;
+    double last_progress_wall_ = 0.0;
     double flushed_wall_ = 0.0;
-    Time told_time_ = 0;
+    Time last_progress_time_ = 0;
 };
 
 }  // namespace puckloop::cosim

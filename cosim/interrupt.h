@@ -16,7 +16,7 @@ class InterruptGuard {
 
     /// For RunOptions::interrupted: the number of the first signal, 0 before.
     const volatile std::sig_atomic_t* flag() const;
-    /// For RunOptions::hurried.
+    /// For RunOptions::abort_requested.
     const volatile std::sig_atomic_t* again() const;
 
   private:

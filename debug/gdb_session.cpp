@@ -34,25 +34,25 @@ std::optional<std::uint32_t> take_address(std::string_view& text) {
 }  // namespace
 
 Resume GdbSession::serve(const Stop& stop) {
-    stand(stop);
+    on_stop(stop);
     while (true)
-        if (const std::optional<Resume> wanted = attend(true)) return *wanted;
+        if (const std::optional<Resume> wanted = poll(true)) return *wanted;
 }
 
-void GdbSession::stand(const Stop& stop) {
+void GdbSession::on_stop(const Stop& stop) {
     stop_ = stop;
     resume_.reset();
     if (std::exchange(awaited_, false)) send(stop_reply());
 }
 
-std::optional<Resume> GdbSession::attend(bool wait) {
+std::optional<Resume> GdbSession::poll(bool wait) {
     if (!socket_.connected()) {
         fmt::print(stderr, "gdb: the debugger at {} has left; the program runs on, and another may connect\n",
                    socket_.address());
         return Resume::Detach;
     }
-    reader_.feed(socket_.read(wait, gives_up_));
-    if (gives_up_ && gives_up_()) return Resume::Kill;
+    reader_.feed(socket_.read(wait, cancelled_));
+    if (cancelled_ && cancelled_()) return Resume::Kill;
     while (const std::optional<RspEvent> event = resume_ ? std::nullopt : reader_.next()) {
         if (event->kind == RspEvent::Kind::Again) socket_.write(last_);
         if (event->kind == RspEvent::Kind::Damaged && acknowledges_) socket_.write("-");
@@ -87,7 +87,7 @@ bool GdbSession::wants_stop() {
     return false;
 }
 
-void GdbSession::over(int status) {
+void GdbSession::on_exit(int status) {
     if (std::exchange(awaited_, false)) send(fmt::format("W{:02x}", status & 0xFF));
     socket_.hang_up();
 }

@@ -18,23 +18,23 @@ enum class Resume : std::uint8_t { Step, Continue, ReverseStep, ReverseContinue,
 
 class GdbSession {
   public:
-    /// `gives_up`: the run is to end (Ctrl-C at its own terminal), asked while waiting.
-    GdbSession(GdbSocket& socket, Debuggee& debuggee, std::function<bool()> gives_up)
-        : socket_(socket), debuggee_(debuggee), gives_up_(std::move(gives_up)) {}
+    /// `cancelled`: the run is to end (Ctrl-C at its own terminal), asked while waiting.
+    GdbSession(GdbSocket& socket, Debuggee& debuggee, std::function<bool()> cancelled)
+        : socket_(socket), debuggee_(debuggee), cancelled_(std::move(cancelled)) {}
 
     /// The program stands still: reports it, if the debugger waits for that, and answers until it is to go
     /// on. A debugger that has left is one that detaches,
     /// which a line on standard error reports.
     Resume serve(const Stop& stop);
     /// The same in parts, for whoever has several debuggers. The program stands still from here on.
-    void stand(const Stop& stop);
+    void on_stop(const Stop& stop);
     /// Answers what has come, waiting for something if `wait`; what the debugger wants once it wants the
     /// program to go on.
-    std::optional<Resume> attend(bool wait);
+    std::optional<Resume> poll(bool wait);
     /// While the program runs: the debugger wants it to stop, or has left.
     bool wants_stop();
     /// The run is over with this exit status.
-    void over(int status);
+    void on_exit(int status);
 
     /// The answer to one packet; empty text is "not supported". Public for tests.
     std::string answer(std::string_view packet);
@@ -54,7 +54,7 @@ class GdbSession {
 
     GdbSocket& socket_;
     Debuggee& debuggee_;
-    std::function<bool()> gives_up_;
+    std::function<bool()> cancelled_;
     RspReader reader_;
     std::string last_;
     bool acknowledges_ = true;

@@ -68,16 +68,16 @@ std::optional<ReplayDifference> SentComparison::check(cosim::Time end) {
     return first;
 }
 
-/// A row that a fault harmed: what is owed first, then what was sent last.
+/// A row that a fault harmed: what is outstanding first, then what was sent last.
 void SentComparison::take_harmed(Link& link) {
     const TraceRow then = link.recorded.front();
-    const auto owed = std::find_if(link.owed.begin(), link.owed.end(),
-                                   [&](const TraceRow& row) { return same_content(then, row); });
-    const bool is_owed =
-        owed != link.owed.end() && (link.replayed.empty() || !same_content(then, link.replayed.front()) ||
-                                    owed->time < link.replayed.front().time);
-    if (is_owed) {
-        link.owed.erase(owed);
+    const auto outstanding = std::find_if(link.outstanding.begin(), link.outstanding.end(),
+                                          [&](const TraceRow& row) { return same_content(then, row); });
+    const bool is_outstanding = outstanding != link.outstanding.end() &&
+                                (link.replayed.empty() || !same_content(then, link.replayed.front()) ||
+                                 outstanding->time < link.replayed.front().time);
+    if (is_outstanding) {
+        link.outstanding.erase(outstanding);
         ++link.messages;
     } else if (!link.replayed.empty() && shows_a_message(then, link.replayed.front())) {
         link.replayed.pop_front();
@@ -94,7 +94,7 @@ bool SentComparison::take_sound(Link& link) {
     const auto found =
         std::find_if(link.replayed.begin(), last, [&](const TraceRow& row) { return text_of(row) == was; });
     if (found == last) return false;
-    link.owed.insert(link.owed.end(), link.replayed.begin(), found);
+    link.outstanding.insert(link.outstanding.end(), link.replayed.begin(), found);
     link.replayed.erase(link.replayed.begin(), found + 1);
     link.recorded.pop_front();
     ++link.messages;
@@ -132,7 +132,7 @@ std::optional<ReplayDifference> SentComparison::check(const std::string& name, L
 std::optional<ReplayDifference> SentComparison::finish(cosim::Time end) const {
     std::optional<ReplayDifference> first;
     for (const auto& [name, link] : links_)
-        for (const auto* rows : {&link.owed, &link.replayed})
+        for (const auto* rows : {&link.outstanding, &link.replayed})
             if (!rows->empty() && rows->front().time < end - kLongestDelay &&
                 (!first || rows->front().time < first->time))
                 first = {rows->front().time, name, link.messages + 1, {}, text_of(rows->front())};

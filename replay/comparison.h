@@ -4,7 +4,7 @@
 // Rows that a fault of the recorded run harmed are compared as far as they show what was sent: a lost frame
 // wholly but for its fate, a changed or delayed one not in its content, and what the fault itself put on the
 // line is passed over. On a link with faults a message may be recorded late, behind others: until then it is
-// owed.
+// outstanding.
 
 #include "cosim/trace/trace_row.h"
 
@@ -35,7 +35,7 @@ class SentComparison {
     /// The first difference in what arrives before `end`, once all before `end` was given.
     std::optional<ReplayDifference> check(cosim::Time end);
 
-    /// The record ends at `end`: what is owed for long was never sent then.
+    /// The record ends at `end`: what is outstanding for long was never sent then.
     std::optional<ReplayDifference> finish(cosim::Time end) const;
 
     std::uint64_t equal() const { return equal_; }
@@ -43,7 +43,7 @@ class SentComparison {
   private:
     struct Link {
         std::deque<cosim::TraceRow> recorded, replayed;
-        std::deque<cosim::TraceRow> owed;  ///< sent again, and their rows are still to come
+        std::deque<cosim::TraceRow> outstanding;  ///< sent again, and their rows are still to come
         bool faults = false;
         std::uint64_t messages = 0;
     };

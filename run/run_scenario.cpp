@@ -12,7 +12,7 @@
 #include "run/report/live_trace.h"
 #include "run/report/report.h"
 #include "run/report/results_folder.h"
-#include "run/report/run_diary.h"
+#include "run/report/run_log.h"
 #include "run/snapshots/snapshot_plan.h"
 #include "run/states/state_plan.h"
 
@@ -178,11 +178,11 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     options.stall_seconds = request.gdb.empty() ? request.stall_seconds : kPatience;
     if (interrupt != nullptr) {
         options.interrupted = interrupt->flag();
-        options.hurried = interrupt->again();
+        options.abort_requested = interrupt->again();
     }
-    RunDiary diary(setup, request);
+    RunLog log(setup, request);
     options.progress = [&](const cosim::Progress& now) {
-        diary.progress(now);
+        log.progress(now);
         if (progress) progress(now);
     };
     // Before anything is started: a named pipe may have to wait for its reader.
@@ -194,13 +194,13 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     std::optional<RunDebuggers> debuggers;
     cosim::NodeFactory factory = make_node;
     if (!request.gdb.empty()) {
-        debuggers.emplace(setup, request, options.hurried);
+        debuggers.emplace(setup, request, options.abort_requested);
         debuggers->keep_past(options, trace, record);
         factory = [&](const std::string& node) { return debuggers->make_node(node); };
     }
     cosim::Outcome outcome;
     do {
-        const bool back = outcome.reason == cosim::EndReason::TakenBack;
+        const bool back = outcome.reason == cosim::EndReason::Reverted;
         if (back) options.from = debuggers->begin_again();
         std::optional<cosim::Conductor> conductor;
         try {
@@ -217,9 +217,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         conductor->add_sink(*trace);
         if (record) conductor->add_sink(*record);
         if (live) conductor->add_sink(*live);
-        diary.started(*conductor);
+        log.started(*conductor);
         outcome = conductor->run();
-    } while (outcome.reason == cosim::EndReason::TakenBack);
+    } while (outcome.reason == cosim::EndReason::Reverted);
     if (live) end_live(*live, outcome);
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;
@@ -233,9 +233,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     collect_states(setup, outcome);
     judge_snapshots(request, outcome);
     if (request.strict) judge_strictly(setup, outcome);
-    diary.ended(outcome);
+    log.ended(outcome);
     write_results(setup, outcome, report);
-    diary.written();
+    log.written();
     return outcome;
 }
 

@@ -28,8 +28,9 @@ class PinTap : public dspic::Pins {
     std::uint16_t quiet_levels(dspic::PortLetter port, dspic::Cycle now) override {
         return inner_.quiet_levels(port, now);
     }
-    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const override {
-        return inner_.next_edge(port, heeded, after);
+    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t monitored,
+                           dspic::Cycle after) const override {
+        return inner_.next_edge(port, monitored, after);
     }
     double analog(int channel, dspic::Cycle now) override { return inner_.analog(channel, now); }
     std::uint64_t analog_epoch(dspic::Cycle from) override { return inner_.analog_epoch(from); }

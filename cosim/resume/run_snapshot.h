@@ -31,7 +31,7 @@ struct NodeSnapshot {
     bool stop_seen = false;
 };
 
-/// A node's wish to end the run that was heard already.
+/// A node's request to end the run that was heard already.
 struct StopSnapshot {
     Stop stop;
     std::uint32_t node = 0;

@@ -40,7 +40,7 @@ struct Channel {
     std::vector<Foreseen> foreseen{};  ///< in order
     bool instant =
         true;  ///< the sender may answer, or take back, at the very time at which something comes in
-    bool chats = false;  ///< of an I2C bus, and something has come by it
+    bool takes_turns = false;  ///< of an I2C bus, and something has come by it
     /// How surely a message comes when the EOT falls due, by what happened before: from 0, never.
     int punctual = 0;
 

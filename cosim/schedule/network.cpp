@@ -122,9 +122,11 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
         Sent& sent = sent_[p];
         // A frame begins at the EOT or later; what an incoming message causes begins after it.
         const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
-        const Time said_before = std::min({wire.base, later(first_in, channel.lookahead), sent.first_change});
-        const Time base = std::max(said_before, later(std::max(port.earliest_output, begun), wire.latency));
-        judge_punctuality(channel, base, sent);
+        const Time previous_bound =
+            std::min({wire.base, later(first_in, channel.lookahead), sent.first_change});
+        const Time base =
+            std::max(previous_bound, later(std::max(port.earliest_output, begun), wire.latency));
+        update_arrival_confidence(channel, base, sent);
         if (state.runs_ahead && !state.bounded) channel.punctual = 0;
         wire.base = base;
         update_channel(port_wire_[n][p]);
@@ -138,7 +140,7 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
 }
 
 /// Whether something came when the EOT fell due: `base` is the next one.
-void Network::judge_punctuality(Channel& channel, Time base, const Sent& sent) const {
+void Network::update_arrival_confidence(Channel& channel, Time base, const Sent& sent) const {
     if (sent.first_new != kNever)
         channel.punctual = sent.first_new == channel.base ? kPatience : std::max(0, channel.punctual - 1);
     else if (base > channel.base)

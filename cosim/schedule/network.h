@@ -82,10 +82,10 @@ class Network {
     /// Appends what is foreseen for node `n` before `until`, in the order of the trace.
     void foreseen(std::size_t n, Time until, std::vector<TraceRecord>& inbox) const;
     /// The first message foreseen for node `n` from `from` on; `heard` is lowered to the first by a wire of a
-    /// bus (Channel::chats).
+    /// bus (Channel::takes_turns).
     Time first_foreseen(std::size_t n, Time from, Time& heard) const;
-    bool chats(const TraceRecord& record) const {
-        return channels_[record.link * 2u + static_cast<unsigned>(record.direction)].chats;
+    bool takes_turns(const TraceRecord& record) const {
+        return channels_[record.link * 2u + static_cast<unsigned>(record.direction)].takes_turns;
     }
     /// What faults put on the lines by themselves.
     void preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
@@ -146,7 +146,7 @@ class Network {
               std::vector<Change>& changes);
     void update_channel(std::size_t w);
     void update_loop(std::size_t w);
-    void judge_punctuality(Channel& channel, Time base, const Sent& sent) const;
+    void update_arrival_confidence(Channel& channel, Time base, const Sent& sent) const;
     const std::vector<Time>& distances_to_node(std::size_t n);
     void pass_on(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
                  std::vector<Change>& changes);

@@ -84,7 +84,7 @@ void Network::take_wire(std::size_t w, Sent& sent, Time ahead, Time first_in,
         check_earliest_output(wire, sent.messages[i].time, delivery(sent.messages[i]), first_in);
     if (first < sent.messages.size()) sent.first_new = delivery(sent.messages[first]);
     const Time change = std::min(sent.first_new, sent.first_change);
-    if (change != kNever && wire.is_i2c) channels_[w].chats = true;
+    if (change != kNever && wire.is_i2c) channels_[w].takes_turns = true;
     if (change != kNever && wire.faults.empty()) changes.push_back({wire.from, wire.to, change});
     for (std::size_t i = wire.settled; i < sent.sure; ++i)
         send(wire, sent.messages[i], deliveries, changes);
@@ -163,7 +163,7 @@ Time Network::first_foreseen(std::size_t n, Time from, Time& heard) const {
         for (const Foreseen& message : channels_[w].foreseen)
             if (message.delivery >= from) {
                 first = std::min(first, message.delivery);
-                if (channels_[w].chats) heard = std::min(heard, message.delivery);
+                if (channels_[w].takes_turns) heard = std::min(heard, message.delivery);
                 break;
             }
     return first;

@@ -20,7 +20,7 @@ constexpr Time kGrowth = 3;
 // One that takes turns on a bus goes on from its mark for so long, beyond what is sure.
 constexpr Time kTurns = 400 * kMicrosecond;
 // Stretches without surprise after which a node no longer waits for the one that caused the last.
-constexpr int kCalm = 16;
+constexpr int kLongStreak = 16;
 }  // namespace
 
 Schedule::Stretch::Stretch() : length(kLongest) {}
@@ -28,7 +28,7 @@ Schedule::Stretch::Stretch() : length(kLongest) {}
 void Schedule::surprised(std::size_t from, std::size_t to) {
     if (to >= stretches_.size()) return;
     stretches_[to].waits_for = from;
-    stretches_[to].calm = 0;
+    stretches_[to].streak = 0;
 }
 
 /// Limit of node `n`, which its own messages set, as if it were silent: it will go in strides.
@@ -66,8 +66,8 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
     pending_ = &pending;
     bounds_.compute(channels, pending);
     find_next(nodes, limits.end);
-    chats_.update(channels, nodes.size());
-    for (std::size_t group = 0; group < chats_.count(); ++group)
+    bus_turns_.update(channels, nodes.size());
+    for (std::size_t group = 0; group < bus_turns_.count(); ++group)
         listen(group, nodes);
     const std::size_t count = nodes.size();
     reached_ = limits.end;
@@ -103,17 +103,17 @@ Time Schedule::stretch_end(Time from, Time length) {
 }
 
 void Schedule::listen(std::size_t group, const std::vector<NodeTimes>& nodes) {
-    heard_.resize(nodes.size());
-    for (const std::size_t n : chats_.nodes(group))
-        heard_[n] = nodes[n].heard;
-    chats_.compute(group, *channels_, heard_);
+    next_unexecuted_.resize(nodes.size());
+    for (const std::size_t n : bus_turns_.nodes(group))
+        next_unexecuted_[n] = nodes[n].heard;
+    bus_turns_.compute(group, *channels_, next_unexecuted_);
 }
 
 /// How far node `n` may well go for its bus: what it hears or sends itself there it does, be it answered at
 /// the same time.
 Time Schedule::turn_end(std::size_t n) const {
-    if (chats_.group_of(n) == kNobody) return kNever;
-    const Time limit = chats_.limit(n), first = std::min(heard_[n], chats_.says(n));
+    if (bus_turns_.group_of(n) == kNobody) return kNever;
+    const Time limit = bus_turns_.limit(n), first = std::min(next_unexecuted_[n], bus_turns_.next_send(n));
     return first == limit ? later(first, 1) : limit;
 }
 
@@ -125,10 +125,10 @@ Time Schedule::worth_going(std::size_t n, Time from) const {
 /// Whether node `n`, which nothing took by surprise, goes on because something is to be said or heard on its
 /// bus, although nothing more is sure.
 bool Schedule::takes_turn(std::size_t n, const NodeTimes& node) {
-    if (chats_.group_of(n) == kNobody) return false;
+    if (bus_turns_.group_of(n) == kNobody) return false;
     const Time reach =
         std::min({ceiling_, expected_[n], node.horizon, later(node.granted, kTurns), turn_end(n)});
-    if (std::min(node.heard, chats_.says(n)) >= reach || reach <= node.ahead) return false;
+    if (std::min(node.heard, bus_turns_.next_send(n)) >= reach || reach <= node.ahead) return false;
     target_[n] = node.granted;
     ahead_[n] = reach;
     return true;
@@ -178,7 +178,7 @@ void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLim
             continue;
         }
         stretch.length = std::clamp(stretch.length + stretch.length / kGrowth, kShortest, kLongest);
-        if (++stretch.calm >= kCalm) stretch.waits_for = kNobody;
+        if (++stretch.streak >= kLongStreak) stretch.waits_for = kNobody;
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "cosim/core/time.h"
 #include "cosim/schedule/bounds.h"
-#include "cosim/schedule/chat.h"
+#include "cosim/schedule/bus_turns.h"
 
 #include <cstddef>
 #include <vector>
@@ -47,7 +47,7 @@ class Schedule {
     bool follow(std::size_t n, const std::vector<NodeTimes>& nodes);
     /// Takes over what the nodes of a bus have said since the plan, and when each hears something next.
     void listen(std::size_t group, const std::vector<NodeTimes>& nodes);
-    const Chats& chats() const { return chats_; }
+    const BusTurns& bus_turns() const { return bus_turns_; }
 
     /// How far node `n` may go, in strides where that is beyond bounds().limit(n): there only the echo of
     /// what it sends itself limits it. At most its present time if it may not go.
@@ -67,7 +67,7 @@ class Schedule {
     struct Stretch {
         Time length;
         std::size_t waits_for = kNobody;  ///< took it by surprise and so goes first
-        int calm = 0;                     ///< stretches since a surprise
+        int streak = 0;                   ///< stretches since a surprise
         Stretch();
     };
 
@@ -86,8 +86,8 @@ class Schedule {
 
     Bounds bounds_;
     Bounds alone_;
-    Chats chats_;
-    std::vector<Time> heard_;
+    BusTurns bus_turns_;
+    std::vector<Time> next_unexecuted_;
     const std::vector<Channel>* channels_ = nullptr;
     const std::vector<Time>* pending_ = nullptr;
     std::vector<Time> target_;

@@ -152,7 +152,7 @@ void Chip::Parts::connect_hooks() {
         if (timer2_too) asynchronous.stop(stopped);
         synchronise_timers();
     };
-    system.jtag_changed = [this] { lend_to_jtag(); };
+    system.jtag_changed = [this] { give_pins_to_jtag(); };
     system.pull_ups_changed = [this] { ports.refresh(); };
     system.quiet_conversion = [this] { adc.quiet(); };
     system.brown_out_on = [this] { supply.detector_on(); };
@@ -178,9 +178,9 @@ void Chip::Parts::connect_hooks() {
     });
 }
 
-void Chip::Parts::lend_to_jtag() {
+void Chip::Parts::give_pins_to_jtag() {
     constexpr std::uint8_t kPins = 0x3C;
-    ports.lend(PortLetter::C, kPins, system.jtag());
+    ports.take_over(PortLetter::C, kPins, system.jtag());
 }
 
 std::array<Chip::Parts::Trigger, 6> Chip::Parts::triggers() {
@@ -245,7 +245,7 @@ void Chip::Parts::reset(ResetCause cause) {
     eeprom.reset();
     watchdog.reset(fuses.watchdog_always());
     programming.reset();
-    lend_to_jtag();
+    give_pins_to_jtag();
     held.reset();
     supply.reset(cause);
     if (supply.holds()) watchdog.stop();

@@ -76,7 +76,7 @@ struct Chip::Parts {
     void keep_refused_spm(std::string_view why);
     void synchronise_timers();
     /// PC2 to PC5 are TCK, TMS, TDO and TDI.
-    void lend_to_jtag();
+    void give_pins_to_jtag();
     /// PSRSYNC, PSRASY: the prescaler starts again; with TSM it stays at 0.
     static void write_gtccr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t);
     void reset(ResetCause cause);

@@ -235,17 +235,17 @@ std::uint16_t Board::quiet_levels(dspic::PortLetter port, dspic::Cycle now) {
     return static_cast<std::uint16_t>(levels);
 }
 
-dspic::Cycle Board::next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const {
+dspic::Cycle Board::next_edge(dspic::PortLetter port, std::uint16_t monitored, dspic::Cycle after) const {
     dspic::Cycle next = dspic::kNoCycle;
     if (!camera_ || !camera_->running()) return next;
-    const auto heeds = [&](dspic::PortLetter letter, unsigned pins) {
-        return port == letter && (heeded & pins) != 0;
+    const auto monitors = [&](dspic::PortLetter letter, unsigned pins) {
+        return port == letter && (monitored & pins) != 0;
     };
-    if (heeds(wiring::kCameraLines, 1u << wiring::kCameraHref)) next = camera_->next_href(after);
-    if (heeds(wiring::kCameraLines, 1u << wiring::kCameraVsync))
+    if (monitors(wiring::kCameraLines, 1u << wiring::kCameraHref)) next = camera_->next_href(after);
+    if (monitors(wiring::kCameraLines, 1u << wiring::kCameraVsync))
         next = std::min(next, camera_->next_vsync(after));
-    if (heeds(wiring::kCameraLines, 1u << wiring::kCameraPclk) ||
-        heeds(wiring::kCameraData, 0xFFu << wiring::kFirstCameraData))
+    if (monitors(wiring::kCameraLines, 1u << wiring::kCameraPclk) ||
+        monitors(wiring::kCameraData, 0xFFu << wiring::kFirstCameraData))
         next = std::min(next, camera_->next_byte(after));
     return next;
 }
@@ -316,7 +316,7 @@ double Board::analog(int channel, dspic::Cycle now) {
         const double reflected = values_[static_cast<std::size_t>(kProximity + sensor)].at(now);
         if (reflected != 0.0) counts -= reflected * emitter.intensity(now);
         counts -= lights_[static_cast<std::size_t>(sensor)].counts_at(now);
-        counts *= 1.0 - dazzle_[static_cast<std::size_t>(sensor)];
+        counts *= 1.0 - ambient_saturation_[static_cast<std::size_t>(sensor)];
     }
     if (channel >= kFirstMicrophoneChannel && channel < kFirstMicrophoneChannel + kMicrophoneCount) {
         const auto i = static_cast<std::size_t>(channel - kFirstMicrophoneChannel);

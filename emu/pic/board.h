@@ -116,7 +116,7 @@ class Board : public dspic::Pins {
     std::optional<dspic::PortLetter> set_battery(std::optional<double> volts, dspic::Cycle now);
     /// Light that swallows this share of each proximity sensor's signal.
     void set_ambient(const chip::AmbientShares& shares) {
-        dazzle_ = shares;
+        ambient_saturation_ = shares;
         ++analog_epoch_;
     }
     /// The wheel of motor 0 (left) or 1 does not turn from `now` on.
@@ -134,7 +134,7 @@ class Board : public dspic::Pins {
         archive.bounded(sag_, 0.0, 1e3);
         archive.bounded(battery_, -1e15, 1e15);
         archive(profile_);
-        for (double& share : dazzle_)
+        for (double& share : ambient_saturation_)
             archive.bounded(share, 0.0, 1.0);
         if (camera_) archive(*camera_);
         if constexpr (Archive::kLoads) check_loaded();
@@ -150,7 +150,8 @@ class Board : public dspic::Pins {
                 dspic::Cycle now) override;
     std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override;
     std::uint16_t quiet_levels(dspic::PortLetter port, dspic::Cycle now) override;
-    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const override;
+    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t monitored,
+                           dspic::Cycle after) const override;
     double analog(int channel, dspic::Cycle now) override;
     std::uint64_t analog_epoch(dspic::Cycle from) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
@@ -204,7 +205,7 @@ class Board : public dspic::Pins {
     chip::AnalogFaults analog_faults_;
     double sag_ = 0.0, battery_ = 0.0;  ///< volts; the battery's without the sag
     std::optional<double> profile_;     ///< in place of the battery's
-    chip::AmbientShares dazzle_{};
+    chip::AmbientShares ambient_saturation_{};
     std::uint64_t analog_epoch_ = 1;
     dspic::Cycle analog_settled_ = dspic::kNoCycle;  ///< since when inputs stand still; kNoCycle: not known
     std::optional<camera::Camera> camera_;

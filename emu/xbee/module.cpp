@@ -161,7 +161,7 @@ void Module::apply(Time now) {
 void Module::run_until(Time until) {
     while (next_task() <= until) {
         const auto node = tasks_.extract(tasks_.begin());
-        happen(node.mapped(), node.key());
+        run_task(node.mapped(), node.key());
     }
 }
 
@@ -178,7 +178,7 @@ Time Module::next_byte() const {
     return std::min(next_radio(), out_.next());
 }
 
-void Module::happen(const Task& task, Time now) {
+void Module::run_task(const Task& task, Time now) {
     switch (task.kind) {
     case TaskKind::Byte:
         byte(static_cast<std::uint8_t>(task.value), now);

@@ -147,7 +147,7 @@ class Module {
     };
 
     void add(cosim::Time at, Task task) { tasks_.emplace(at, std::move(task)); }
-    void happen(const Task& task, cosim::Time now);
+    void run_task(const Task& task, cosim::Time now);
     void forget_everything();
     void boot(std::uint8_t status, cosim::Time now);
     void tell_radio(bool on, cosim::Time now);

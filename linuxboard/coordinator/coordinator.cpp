@@ -207,8 +207,8 @@ void Coordinator::take_found(const XBeeAtResponse& response) {
     const std::string name(value.begin() + kNameAt, end);
     if (is_tam(name))
         add(name, address);
-    else if (first_time(passed_over_, address))
-        note("passed_over", hex(address), fmt::format("'{}' is not called TAM and two digits", name));
+    else if (first_time(ignored_, address))
+        note("ignored", hex(address), fmt::format("'{}' is not called TAM and two digits", name));
 }
 
 void Coordinator::add(const std::string& name, std::uint64_t address) {
@@ -219,8 +219,8 @@ void Coordinator::add(const std::string& name, std::uint64_t address) {
         if (same->tam->lost()) {
             same->tam->move_to(address);
             same->tam->note("discovered", hex(address), "instead of the one that was lost");
-        } else if (first_time(passed_over_, address)) {
-            note("passed_over", hex(address), fmt::format("a second {}", name));
+        } else if (first_time(ignored_, address)) {
+            note("ignored", hex(address), fmt::format("a second {}", name));
         }
         return;
     }

@@ -87,9 +87,9 @@ class Coordinator {
     double steps_ = 0;   ///< the next step is due so many kStep behind `begun_`
     double window_ = 0;  ///< s: the modules answer a discovery within this
     double next_discovery_ = 0, earliest_discovery_ = 0, next_strength_ = 0;
-    std::vector<Booth> booths_;               ///< in the order of their discovery
-    std::vector<std::uint64_t> unnamed_;      ///< reported before they were discovered
-    std::vector<std::uint64_t> passed_over_;  ///< noted already: no TAM, or a second one of its name
+    std::vector<Booth> booths_;           ///< in the order of their discovery
+    std::vector<std::uint64_t> unnamed_;  ///< reported before they were discovered
+    std::vector<std::uint64_t> ignored_;  ///< noted already: no TAM, or a second one of its name
     std::deque<Flight> flights_;
     std::size_t turn_ = 0;  ///< the booth whose wish is looked at first
     std::uint8_t last_id_ = 0;

@@ -48,7 +48,7 @@ double turn(double from, double to) {
 
 Dynamics::Impl::Impl(const Parameters& parameters, const std::vector<Shape>& fixed_shapes)
     : contact(parameters.contact) {
-    const OdeSession session(complaints);
+    const OdeSession session(ode_warnings);
     world = dWorldCreate();
     contacts = dJointGroupCreate(0);
     const auto& p = parameters.world;
@@ -76,7 +76,7 @@ void Dynamics::Impl::set_fixed(FixedBody& body, const Shape& shape) {
 }
 
 Dynamics::Impl::~Impl() {
-    const OdeSession session(complaints);
+    const OdeSession session(ode_warnings);
     for (const auto& body : fixed)
         if (body.geom != nullptr) dGeomDestroy(body.geom);
     for (const auto& object : objects)
@@ -155,7 +155,7 @@ Dynamics::Dynamics(const Parameters& world, const std::vector<Shape>& fixed)
 Dynamics::~Dynamics() = default;
 
 std::size_t Dynamics::add_robot(const BodyParameters& p, double x, double y, double heading) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     const double cosine = std::cos(heading);
     const double sine = std::sin(heading);
     RobotBody robot;
@@ -190,7 +190,7 @@ std::size_t Dynamics::add_robot(const BodyParameters& p, double x, double y, dou
 }
 
 std::size_t Dynamics::add_object(const Shape& shape, double heading, double kilograms) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     ObjectBody object;
     object.shape = shape;
     object.standing_height = shape.height / 2;
@@ -227,7 +227,7 @@ void Dynamics::move_floor(std::size_t robot, const FloorVelocity& velocity) {
 }
 
 void Dynamics::step() {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     for (const auto& robot : impl_->robots)
         impl_->damp_pitch(robot);
     for (std::size_t i = 0; i < impl_->robots.size(); ++i)
@@ -259,12 +259,12 @@ std::span<const RobotContact> Dynamics::robot_contacts() const {
     return impl_->robot_contacts;
 }
 
-std::uint64_t Dynamics::complaints() const {
-    return impl_->complaints.count;
+std::uint64_t Dynamics::ode_warnings() const {
+    return impl_->ode_warnings.count;
 }
 
-const std::string& Dynamics::first_complaint() const {
-    return impl_->complaints.first;
+const std::string& Dynamics::first_ode_warning() const {
+    return impl_->ode_warnings.first;
 }
 
 }  // namespace puckloop::physics

@@ -88,8 +88,8 @@ class Dynamics {
     std::span<const RobotContact> robot_contacts() const;
 
     /// How often ODE complained, and what it said first.
-    std::uint64_t complaints() const;
-    const std::string& first_complaint() const;
+    std::uint64_t ode_warnings() const;
+    const std::string& first_ode_warning() const;
 
   private:
     struct Impl;

@@ -71,7 +71,7 @@ struct Dynamics::Impl {
     }
 
     StepObserver* observer = nullptr;
-    Complaints complaints;
+    OdeWarnings ode_warnings;
     ContactParameters contact{};
     dWorldID world = nullptr;
     dJointGroupID contacts = nullptr;

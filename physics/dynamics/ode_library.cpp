@@ -12,7 +12,7 @@ namespace puckloop::physics {
 
 namespace {
 
-thread_local Complaints* current = nullptr;
+thread_local OdeWarnings* current = nullptr;
 
 std::string formatted(const char* message, va_list arguments) {
     std::array<char, 256> text{};
@@ -45,11 +45,11 @@ struct ThreadData {
 
 }  // namespace
 
-OdeSession::OdeSession(Complaints& complaints) : previous_(current) {
+OdeSession::OdeSession(OdeWarnings& ode_warnings) : previous_(current) {
     static const Library library;
     static thread_local const ThreadData thread_data;
     static_cast<void>(thread_data);
-    current = &complaints;
+    current = &ode_warnings;
 }
 
 OdeSession::~OdeSession() {

@@ -7,22 +7,22 @@
 namespace puckloop::physics {
 
 /// ODE's messages of one world.
-struct Complaints {
+struct OdeWarnings {
     std::uint64_t count = 0;
     std::string first;
 };
 
-/// While it lives, this thread may call ODE and what ODE reports goes to `complaints`; errors that ODE calls
-/// fatal are thrown as RunError.
+/// While it lives, this thread may call ODE and what ODE reports goes to `ode_warnings`; errors that ODE
+/// calls fatal are thrown as RunError.
 class OdeSession {
   public:
-    explicit OdeSession(Complaints& complaints);
+    explicit OdeSession(OdeWarnings& ode_warnings);
     ~OdeSession();
     OdeSession(const OdeSession&) = delete;
     OdeSession& operator=(const OdeSession&) = delete;
 
   private:
-    Complaints* previous_;
+    OdeWarnings* previous_;
 };
 
 }  // namespace puckloop::physics

@@ -18,14 +18,14 @@ void rest(dBodyID body) {
 }  // namespace
 
 std::size_t Dynamics::add_fixed(const Shape& shape) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     impl_->set_fixed(impl_->fixed.emplace_back(), shape);
     impl_->near.forget();
     return impl_->fixed.size() - 1;
 }
 
 void Dynamics::place_fixed(std::size_t index, const Shape& shape) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     impl_->set_fixed(impl_->fixed[index], shape);
     impl_->near.forget();
     // What leant on it or slept beside it may move now.
@@ -40,7 +40,7 @@ void Dynamics::remove_fixed(std::size_t index) {
 }
 
 void Dynamics::place_object(std::size_t index, double x, double y, double heading, double vx, double vy) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     auto& object = impl_->objects[index];
     dMatrix3 rotation;
     dRFromAxisAndAngle(rotation, 0, 0, 1, heading);
@@ -52,7 +52,7 @@ void Dynamics::place_object(std::size_t index, double x, double y, double headin
 }
 
 void Dynamics::remove_object(std::size_t index) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     auto& object = impl_->objects[index];
     object.present = false;
     rest(object.body);
@@ -60,7 +60,7 @@ void Dynamics::remove_object(std::size_t index) {
 }
 
 void Dynamics::hold_robot(std::size_t index) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     auto& robot = impl_->robots[index];
     if (robot.hand != nullptr) return;
     rest(robot.chassis);
@@ -70,7 +70,7 @@ void Dynamics::hold_robot(std::size_t index) {
 }
 
 void Dynamics::release_robot(std::size_t index) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     auto& robot = impl_->robots[index];
     if (robot.hand == nullptr) return;
     dJointDestroy(robot.hand);
@@ -78,7 +78,7 @@ void Dynamics::release_robot(std::size_t index) {
 }
 
 void Dynamics::place_robot(std::size_t index, double x, double y, double heading) {
-    const OdeSession session(impl_->complaints);
+    const OdeSession session(impl_->ode_warnings);
     auto& robot = impl_->robots[index];
     const auto& p = robot.parameters;
     const double cosine = std::cos(heading), sine = std::sin(heading);

@@ -131,7 +131,7 @@ void IrFaults::begin_frame(Time now, std::size_t sender) {
     std::fill(hits_.begin() + row, end, 0);
     bool anybody = false;
     for (std::size_t r = 0; r < boards_; ++r) {
-        const auto& carrier = medium_.unharmed(sender, r);
+        const auto& carrier = medium_.without_faults(sender, r);
         const auto threshold = static_cast<float>(medium_.parameters(r).threshold);
         const bool heard = std::any_of(carrier.begin(), carrier.end(),
                                        [&](float strength) { return strength >= threshold; });

@@ -12,7 +12,7 @@
 // follow the sender's edges, and between them its nominal chip.
 
 #include "cosim/faults/fault_json.h"
-#include "physics/ir/ir_harm.h"
+#include "physics/ir/ir_fault_effects.h"
 #include "physics/ir/ir_medium.h"
 
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace puckloop::physics {
 
-class IrFaults final : public IrHarm {
+class IrFaults final : public IrFaultEffects {
   public:
     /// Throws InputError: a link or a robot that is not there. `medium` stays.
     IrFaults(std::vector<cosim::CarriedFault> faults, const IrMedium& medium);
@@ -39,7 +39,7 @@ class IrFaults final : public IrHarm {
     /// Has foreign light on `board` changed? Cleared by it.
     bool shone(std::size_t board);
 
-    // IrHarm
+    // IrFaultEffects
     std::uint16_t lit(std::size_t sender, std::size_t receiver, std::uint16_t mask) const override;
     bool weakens(std::size_t sender, std::size_t receiver, Factors& factors) const override;
     void add_ambient(std::size_t board, IrArray<float>& level) const override;

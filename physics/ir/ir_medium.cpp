@@ -48,7 +48,7 @@ IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world
                               {},
                               {},
                               RandomStream(world.seed, "ir/" + pair),
-                              IrFate(receiver.model.parameters(), world.seed, pair)});
+                              BurstOutcomes(receiver.model.parameters(), world.seed, pair)});
             spells_.emplace_back(sender.model.parameters(), world.seed, sender.name + "," + receiver.name);
         }
     for (const Shape& shape : moving_)
@@ -171,12 +171,12 @@ void IrMedium::draw_noise(std::size_t sender, double seconds) {
             to.factor.level[k] = static_cast<float>(std::exp(common + p.receiver_noise * to.noise.normal()));
             to.factor.carrier[k] = static_cast<float>(std::exp(p.carrier_noise * to.noise.normal()));
         }
-        const BurstFate fate = to.fate.next();
-        to.turn = fate.turn;
-        if (spell(sender, r).at(seconds) || fate.lost) to.factor.carrier = {};
-        if (fate.strength != 1.0F)
+        const BurstOutcome outcome = to.outcomes.next();
+        to.turn = outcome.turn;
+        if (spell(sender, r).at(seconds) || outcome.lost) to.factor.carrier = {};
+        if (outcome.strength != 1.0F)
             for (float& level : to.factor.level)
-                level *= fate.strength;
+                level *= outcome.strength;
     }
 }
 
@@ -195,14 +195,14 @@ bool IrMedium::refresh(std::size_t board) {
     return true;
 }
 
-template <bool kHarmed>
-void IrMedium::light(Path& to, std::uint16_t mask, const IrHarm::Factors* harm) const {
+template <bool kFaulty>
+void IrMedium::light(Path& to, std::uint16_t mask, const IrFaultEffects::Factors* effects) const {
     to.light = {};
     if (!to.coupling.any) return;
     for (std::size_t e = 0; e < kIrSensors; ++e) {
         if ((mask >> e & 1U) == 0) continue;
         for (std::size_t k = 0; k < kIrSensors; ++k) {
-            const float share = kHarmed ? harm->emitter[e] : 1.0F;
+            const float share = kFaulty ? effects->emitter[e] : 1.0F;
             to.light.carrier[k] += share * to.coupling.carrier[e][k];
             to.light.level[k] += share * to.coupling.level[e][k];
         }
@@ -211,14 +211,14 @@ void IrMedium::light(Path& to, std::uint16_t mask, const IrHarm::Factors* harm) 
     std::rotate(to.light.carrier.begin(), to.light.carrier.begin() + turn, to.light.carrier.end());
     std::rotate(to.light.level.begin(), to.light.level.begin() + turn, to.light.level.end());
     for (std::size_t k = 0; k < kIrSensors; ++k) {
-        to.light.carrier[k] *= to.factor.carrier[k] * (kHarmed ? harm->carrier[k] : 1.0F);
-        to.light.level[k] *= to.factor.level[k] * (kHarmed ? harm->level[k] : 1.0F);
+        to.light.carrier[k] *= to.factor.carrier[k] * (kFaulty ? effects->carrier[k] : 1.0F);
+        to.light.level[k] *= to.factor.level[k] * (kFaulty ? effects->level[k] : 1.0F);
     }
 }
 
 bool IrMedium::relight(std::size_t board) {
     Board& from = boards_[board];
-    if (from.mask == 0 && harm_ == nullptr) return false;  // nobody looks at its light
+    if (from.mask == 0 && fault_effects_ == nullptr) return false;  // nobody looks at its light
     const bool anew = from.mask != 0 && from.coupled_at == 0;
     if (anew) {
         note_row(board);
@@ -229,13 +229,13 @@ bool IrMedium::relight(std::size_t board) {
     from.lit_mask = from.mask;
     for (std::size_t r = 0; r < boards_.size(); ++r) {
         Path& to = path(board, r);
-        if (harm_ == nullptr) {
+        if (fault_effects_ == nullptr) {
             light<false>(to, from.mask);
             continue;
         }
-        const std::uint16_t mask = harm_->lit(board, r, from.mask);
-        IrHarm::Factors factors;
-        if (harm_->weakens(board, r, factors))
+        const std::uint16_t mask = fault_effects_->lit(board, r, from.mask);
+        IrFaultEffects::Factors factors;
+        if (fault_effects_->weakens(board, r, factors))
             light<true>(to, mask, &factors);
         else
             light<false>(to, mask);
@@ -249,7 +249,7 @@ void IrMedium::relight_anew(std::size_t board) {
     relight(board);
 }
 
-IrArray<float> IrMedium::unharmed(std::size_t sender, std::size_t receiver) const {
+IrArray<float> IrMedium::without_faults(std::size_t sender, std::size_t receiver) const {
     Path copy = path(sender, receiver);
     light<false>(copy, boards_[sender].mask);
     return copy.light.carrier;
@@ -259,7 +259,7 @@ IrLight IrMedium::at(std::size_t receiver) const {
     IrLight sum;
     sum.level = dark_level_[receiver];
     for (std::size_t s = 0; s < boards_.size(); ++s) {
-        if (boards_[s].mask == 0 && harm_ == nullptr) continue;
+        if (boards_[s].mask == 0 && fault_effects_ == nullptr) continue;
         const Path& to = path(s, receiver);
         if (!to.coupling.any) continue;
         for (std::size_t k = 0; k < kIrSensors; ++k) {
@@ -267,7 +267,7 @@ IrLight IrMedium::at(std::size_t receiver) const {
             sum.level[k] += to.light.level[k];
         }
     }
-    if (harm_ != nullptr) harm_->add_ambient(receiver, sum.level);
+    if (fault_effects_ != nullptr) fault_effects_->add_ambient(receiver, sum.level);
     return sum;
 }
 

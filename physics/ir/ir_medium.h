@@ -9,9 +9,9 @@
 // bursts are refreshed, ir.refresh). 2. Noise does not vary within a burst.
 
 #include "base/random.h"
+#include "physics/ir/burst_outcomes.h"
 #include "physics/ir/ir_coupling.h"
-#include "physics/ir/ir_fate.h"
-#include "physics/ir/ir_harm.h"
+#include "physics/ir/ir_fault_effects.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -81,10 +81,10 @@ class IrMedium {
     /// Of board `to` from the front of `from`, counter-clockwise, rad.
     double bearing(std::size_t from, std::size_t to) const;
 
-    /// Faults; `harm` stays. Nullptr: none.
-    void set_harm(const IrHarm* harm) { harm_ = harm; }
+    /// Faults; `effects` stays. Nullptr: none.
+    void set_fault_effects(const IrFaultEffects* effects) { fault_effects_ = effects; }
     /// The carrier of `sender` at `receiver` if there were no faults.
-    IrArray<float> unharmed(std::size_t sender, std::size_t receiver) const;
+    IrArray<float> without_faults(std::size_t sender, std::size_t receiver) const;
 
     /// What boards are set to, for a checkpoint. Paths, places and shapes, which are many and of which few
     /// change in a short time, stay out of it: from mark() on they are noted before they change, rewind(),
@@ -116,7 +116,7 @@ class IrMedium {
         IrCoupling coupling;
         IrLight factor, light;
         RandomStream noise;
-        IrFate fate;
+        BurstOutcomes outcomes;
         std::size_t turn = 0;  ///< of the present burst
     };
     /// As it was at the mark (ir_medium_undo.cpp).
@@ -163,8 +163,8 @@ class IrMedium {
     void couple_row(std::size_t sender);
     void draw_noise(std::size_t sender, double seconds);
     /// By the present coupling, from the emitters in `mask`.
-    template <bool kHarmed>
-    void light(Path& to, std::uint16_t mask, const IrHarm::Factors* harm = nullptr) const;
+    template <bool kFaulty>
+    void light(Path& to, std::uint16_t mask, const IrFaultEffects::Factors* effects = nullptr) const;
     /// What stands around and is high enough to shade the two boards.
     std::vector<const Shape*> between(const Board& a, const Board& b) const;
 
@@ -181,7 +181,7 @@ class IrMedium {
     std::vector<std::size_t> board_of_;  // of each moving body; board_count() for none
     std::uint64_t changes_ = 1;
     Undo undo_;
-    const IrHarm* harm_ = nullptr;
+    const IrFaultEffects* fault_effects_ = nullptr;
 };
 
 }  // namespace puckloop::physics

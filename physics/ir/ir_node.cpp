@@ -144,7 +144,7 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
     looked.resize(receivers.size());
     if (!options.faults.empty()) {
         faults = std::make_unique<IrFaults>(options.faults, medium);
-        medium.set_harm(faults.get());
+        medium.set_fault_effects(faults.get());
     }
     for (std::size_t r = 0; r < receivers.size(); ++r)
         receivers[r].see(0, medium.at(r));

@@ -318,8 +318,9 @@ std::string WorldNode::finish() {
             told["pushed_theta_rad"] = floor.pushed()[2];
         }
     }
-    report["ode_messages"] = model.dynamics().complaints();
-    if (model.dynamics().complaints() > 0) report["ode_first_message"] = model.dynamics().first_complaint();
+    report["ode_messages"] = model.dynamics().ode_warnings();
+    if (model.dynamics().ode_warnings() > 0)
+        report["ode_first_message"] = model.dynamics().first_ode_warning();
     if (impl_->timeline.active()) add_events(impl_->timeline.journal(), report);
     return report.dump();
 }

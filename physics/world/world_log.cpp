@@ -95,9 +95,9 @@ void WorldLog::after_step(const WorldModel& world) {
     contacts(world);
     drives(world);
     beams(world);
-    if (complaints_ == 0 && world.dynamics().complaints() > 0)
-        write("first message of ODE: " + world.dynamics().first_complaint());
-    complaints_ = world.dynamics().complaints();
+    if (ode_warnings_ == 0 && world.dynamics().ode_warnings() > 0)
+        write("first message of ODE: " + world.dynamics().first_ode_warning());
+    ode_warnings_ = world.dynamics().ode_warnings();
 }
 
 void WorldLog::contacts(const WorldModel& world) {
@@ -170,7 +170,7 @@ void WorldLog::end(const WorldModel& world) {
         write(fmt::format("{} ends at {}, heading {:.2f} deg", world.object_names()[i],
                           at(world.object(i).x, world.object(i).y), degrees(world.object(i).heading)));
     write(fmt::format("end: {} steps of 1 ms, {} messages of ODE", world.steps_done(),
-                      world.dynamics().complaints()));
+                      world.dynamics().ode_warnings()));
 }
 
 }  // namespace puckloop::physics

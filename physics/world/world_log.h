@@ -48,7 +48,7 @@ class WorldLog {
     std::map<RobotContact, Episode> touching_;
     std::vector<Told> told_;
     std::vector<std::array<bool, booth::kBarriers>> interrupted_;  // of each booth
-    std::uint64_t complaints_ = 0;
+    std::uint64_t ode_warnings_ = 0;
 };
 
 }  // namespace puckloop::physics

@@ -76,7 +76,7 @@ void BoardDebugger::end_advance(cosim::Time until) {
 
 bool BoardDebugger::instruction(std::uint32_t /*pc*/, std::uint64_t cycle) {
     if (std::exchange(begun_at_, cycle) != cycle) behind_ = false;
-    anew_ = false;
+    reset_pending_ = false;
     while (const Change* change = next_inside(cycle)) {
         if (change->reset) break;
         repeat_change();
@@ -88,7 +88,7 @@ bool BoardDebugger::instruction(std::uint32_t /*pc*/, std::uint64_t cycle) {
             run_.stand_still(*this, {Stop::Why::Interrupt}, true);
     }
     // Whoever stops here sees the chip before its reset; then it comes again, with its first instruction.
-    if (!anew_ && next_inside(cycle) != nullptr) repeat_change();
+    if (!reset_pending_ && next_inside(cycle) != nullptr) repeat_change();
     return true;
 }
 
@@ -110,28 +110,28 @@ std::uint64_t BoardDebugger::position() const {
     return 2 * cycle + (behind_ && begun_at_ == cycle ? 1 : 0);
 }
 
-void BoardDebugger::stand(const Stop& stop, bool inside) {
+void BoardDebugger::on_stop(const Stop& stop, bool inside) {
     control_.pause();
     stands_ = true;
     inside_ = inside;
-    session_.stand(stop);
+    session_.on_stop(stop);
 }
 
-bool BoardDebugger::attend() {
+bool BoardDebugger::poll() {
     if (!stands_ || (!met_ && !socket_.connected())) {
         // A debugger that comes, wants its program to stop, or leaves.
         if (!stands_ && met_ && session_.wants_stop()) {
-            stand({Stop::Why::Interrupt}, false);
+            on_stop({Stop::Why::Interrupt}, false);
             return true;
         }
         if (!met_ && socket_.accept_now()) {
             met_ = true;
-            if (!stands_) stand({}, false);
+            if (!stands_) on_stop({}, false);
             return true;
         }
         return false;
     }
-    const auto wanted = session_.attend(false);
+    const auto wanted = session_.poll(false);
     if (wanted) resume(*wanted);
     return wanted.has_value();
 }
@@ -143,8 +143,8 @@ void BoardDebugger::resume(Resume how) {
     if (how == Resume::ReverseStep || how == Resume::ReverseContinue)
         run_.go_back(*this, how == Resume::ReverseStep);  // returns only where there is nothing before
     else
-        return control_.begin_inside(how == Resume::Step, inside_ && !anew_);
-    stand({Stop::Why::Begin}, inside_);
+        return control_.begin_inside(how == Resume::Step, inside_ && !reset_pending_);
+    on_stop({Stop::Why::Begin}, inside_);
 }
 
 void BoardDebugger::go_back(std::size_t changes) {
@@ -171,7 +171,7 @@ bool BoardDebugger::change(std::function<bool(debug::DebugChip&)> change) {
 
 void BoardDebugger::reset_board() {
     press_reset_(*outbox_);
-    anew_ = behind_ = true;
+    reset_pending_ = behind_ = true;
 }
 
 void BoardDebugger::press_reset() {

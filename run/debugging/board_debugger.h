@@ -41,16 +41,16 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     cosim::Time granted() const { return granted_(); }
     /// Where the board stood when its debugger killed the run.
     std::optional<cosim::Time> killed_at() const { return killed_at_; }
-    void over(int status) { session_.over(status); }
+    void on_exit(int status) { session_.on_exit(status); }
 
     // Of all debuggers of the run (run/debugging/run_debuggers.h).
     /// The board stands still until its debugger lets it go on. `inside`: before an instruction, which is
     /// executed then.
-    void stand(const debug::Stop& stop, bool inside);
+    void on_stop(const debug::Stop& stop, bool inside);
     bool stands() const { return stands_; }
     /// While the run stands still: answers what has come, takes a debugger that comes. False: there was
     /// nothing.
-    bool attend();
+    bool poll();
     int descriptor() const { return socket_.descriptor(); }
     /// Whatever its debugger wants.
     void let_go() { stands_ = false; }
@@ -110,7 +110,7 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     bool stands_ = false, inside_ = false;
     std::optional<cosim::Time> killed_at_;
     bool reset_ = false;          ///< pressed between two advances: the next one begins with it
-    bool anew_ = false;           ///< pressed at the present instruction, which is not executed any more
+    bool reset_pending_ = false;  ///< pressed at the present instruction, which is not executed any more
     std::uint64_t begun_at_ = 0;  ///< the present instruction
     bool behind_ = false;         ///< it is the first one after a reset at this very cycle
     bool changing_ = false;       ///< repeats a change of the debugger's: no access of the program's

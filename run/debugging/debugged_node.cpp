@@ -41,7 +41,7 @@ class DebuggedNode final : public cosim::StatefulNode {
     void renew_random_streams() override { board_->renew_random_streams(); }
     std::string finish() override {
         debugger_.look_at(nullptr);
-        debugger_.over(0);
+        debugger_.on_exit(0);
         return board_->finish();
     }
 

@@ -29,8 +29,8 @@ std::string fixed(const RunSetup& setup, const RunRequest& request) {
 }  // namespace
 
 RunDebuggers::RunDebuggers(const RunSetup& setup, const RunRequest& request,
-                           const volatile std::sig_atomic_t* hurried)
-    : origin_(request.snapshot), hurried_(hurried), no_way_back_(fixed(setup, request)) {
+                           const volatile std::sig_atomic_t* abort_requested)
+    : origin_(request.snapshot), abort_requested_(abort_requested), no_way_back_(fixed(setup, request)) {
     for (const cosim::NodeSpec& node : setup.nodes) {
         const json spec = json::parse(node.json);
         if (!spec.contains("gdb")) continue;
@@ -94,14 +94,14 @@ const RunHistory::Place* RunDebuggers::kept() const {
 
 void RunDebuggers::stand_still(BoardDebugger& who, const debug::Stop& stop, bool inside) {
     plan_.reset();
-    who.stand(stop, inside);
+    who.on_stop(stop, inside);
     const auto stands = [](const auto& board) { return board->stands(); };
     while (std::any_of(boards_.begin(), boards_.end(), stands)) {
         bool any = false;
         for (const auto& board : boards_)
-            any = board->attend() || any;
+            any = board->poll() || any;
         // The user ends the run at its own terminal, at once.
-        if (hurried_ != nullptr && *hurried_ != 0)
+        if (abort_requested_ != nullptr && *abort_requested_ != 0)
             for (const auto& board : boards_)
                 board->let_go();
         else if (!any)
@@ -132,7 +132,7 @@ void RunDebuggers::go_back(BoardDebugger& who, bool step) {
     for (const auto& board : boards_)
         board->remember_present();
     plan_ = Plan{.who = who.index(), .step = step, .instant = *instant, .limit = who.position()};
-    throw cosim::TakenBack{};
+    throw cosim::Reverted{};
 }
 
 void RunDebuggers::stopped(BoardDebugger& who) {
@@ -160,7 +160,7 @@ void RunDebuggers::search_over(BoardDebugger& who) {
         plan_->instant -= std::min(plan_->instant, plan_->next);
         plan_->next *= 2;
     }
-    throw cosim::TakenBack{};
+    throw cosim::Reverted{};
 }
 
 }  // namespace puckloop::tools

@@ -2,7 +2,7 @@
 // All debuggers of a run, and the run's way back.
 //
 // They and their boards live in the conductor's process. While one board stands still all debuggers are
-// answered. To go back, the run is given up (cosim::TakenBack) and begun again from an earlier snapshot: once
+// answered. To go back, the run is given up (cosim::Reverted) and begun again from an earlier snapshot: once
 // or a few times to find where the board was to stop, each time from twice as far back, and once more to stop
 // there. Every node goes along, and what was written of the trace since is cut off.
 
@@ -25,7 +25,8 @@ class RunDebuggers {
   public:
     /// One for each board of `setup` with a "gdb" place. `setup` must stay. Throws InputError: nobody can
     /// listen at one of them.
-    RunDebuggers(const RunSetup& setup, const RunRequest& request, const volatile std::sig_atomic_t* hurried);
+    RunDebuggers(const RunSetup& setup, const RunRequest& request,
+                 const volatile std::sig_atomic_t* abort_requested);
 
     /// As run/factory/node_factory.h, with debuggers at their boards.
     std::unique_ptr<cosim::Node> make_node(const std::string& json);
@@ -33,7 +34,7 @@ class RunDebuggers {
     /// writes.
     void keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,
                    std::optional<cosim::TraceCsvSink>& record);
-    /// After EndReason::TakenBack: from where the run is to begin again; null: from power-up.
+    /// After EndReason::Reverted: from where the run is to begin again; null: from power-up.
     const cosim::RunSnapshot* begin_again();
     /// How much of what was written stays; nothing: the run begins where it began first.
     const RunHistory::Place* kept() const;
@@ -69,7 +70,7 @@ class RunDebuggers {
 
     std::vector<std::unique_ptr<BoardDebugger>> boards_;
     std::shared_ptr<const cosim::RunSnapshot> origin_;
-    const volatile std::sig_atomic_t* hurried_;
+    const volatile std::sig_atomic_t* abort_requested_;
     std::string no_way_back_;  ///< why; empty: there is one
     RunHistory history_;
     std::optional<Plan> plan_;

@@ -236,10 +236,10 @@ RunSetup set_up(const RunRequest& request) {
     Scenario& scenario = setup.scenario;
     apply(request, scenario);
     scenarios::check_ending(scenario);
-    if (!scenario.passed_over.empty())
+    if (!scenario.ignored.empty())
         setup.warnings.push_back(
             fmt::format("{}: [measurement] is of the measuring chain and not of this run: {}",
-                        request.overlay.string(), fmt::join(scenario.passed_over, ", ")));
+                        request.overlay.string(), fmt::join(scenario.ignored, ", ")));
     setup.out = std::filesystem::absolute(request.out.empty() ? std::filesystem::path("out") / scenario.name
                                                               : request.out);
 
@@ -279,7 +279,7 @@ RunSetup set_up(const RunRequest& request) {
     add_can_buses(setup);
     add_ircom(setup, world);
     name_linked_ports(setup);
-    hand_out_faults(setup);
+    assign_faults(setup);
     plan_states(setup, request);
     if (!request.gdb.empty() && (!request.from_state.empty() || !request.save_state.empty()))
         throw InputError("", "--gdb", "saved states and a debugger do not go together", "one of them");

@@ -74,7 +74,7 @@ ordered_json to_json(const cosim::Firing& firing) {
 
 }  // namespace
 
-void hand_out_faults(RunSetup& setup) {
+void assign_faults(RunSetup& setup) {
     auto& faults = setup.scenario.faults;
     cosim::name_faults(faults);
     std::map<std::string, ordered_json> lists;

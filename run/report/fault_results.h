@@ -13,7 +13,7 @@ namespace puckloop::tools {
 
 /// Names the faults and gives those of nodes to their nodes' descriptions; again, if faults were added since.
 /// Throws InputError for a node that is not there.
-void hand_out_faults(RunSetup& setup);
+void assign_faults(RunSetup& setup);
 
 /// Takes what nodes say of their faults into the outcome's reports. A run in which a fault never fired that
 /// had to is no success.

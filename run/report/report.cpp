@@ -29,7 +29,7 @@ std::string_view reason_name(cosim::EndReason reason) {
         return "interrupted";
     case cosim::EndReason::Failed:
         return "failed";
-    case cosim::EndReason::TakenBack:
+    case cosim::EndReason::Reverted:
         break;  // and begun again: nobody reports it
     }
     return "";

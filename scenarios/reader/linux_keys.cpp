@@ -61,10 +61,10 @@ void read_program(Reader& reader, LinuxBoard& board) {
     board.grace = reader.quantity("grace", Dimension::Time, board.grace);
     if (board.grace < 0 || board.grace > kLongestGrace)
         reader.fail("grace", "grace is out of range", "0 s to 1 h");
-    read_lateness(reader, board.late);
+    read_delays(reader, board.late);
 }
 
-void read_lateness(Reader& reader, LinuxLateness& late) {
+void read_delays(Reader& reader, LinuxDelays& late) {
     constexpr double kLongest = 1.0;  // s
     const auto read = [&](const char* key, double& value, double least = 0.0) {
         value = reader.quantity(key, Dimension::Time, value);

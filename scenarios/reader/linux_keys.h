@@ -11,6 +11,6 @@ namespace puckloop::scenarios {
 void read_program(Reader& reader, LinuxBoard& board);
 
 /// Those that are absent leave `late` as it is.
-void read_lateness(Reader& reader, LinuxLateness& late);
+void read_delays(Reader& reader, LinuxDelays& late);
 
 }  // namespace puckloop::scenarios

@@ -60,10 +60,10 @@ void apply_uart(const std::string& file, const TomlValue& table, Scenario& scena
 /// [linux]: what every Linux board is late with.
 void apply_linux(const std::string& file, const TomlValue& table, Scenario& scenario) {
     Reader reader(file, "linux", table);
-    LinuxLateness late;
-    read_lateness(reader, late);
+    LinuxDelays late;
+    read_delays(reader, late);
     for (RobotBoards& robot : scenario.robots)
-        if (robot.linux_board) read_lateness(reader, robot.linux_board->late);
+        if (robot.linux_board) read_delays(reader, robot.linux_board->late);
     reader.finish();
 }
 
@@ -108,7 +108,7 @@ void apply_overlay(Scenario& scenario, const std::filesystem::path& file) {
     if (const TomlValue* table = top.table("clock")) apply_clock(name, *table, scenario);
     if (const TomlValue* table = top.table("measurement"))
         for (const auto& [parameter, value] : std::get<TomlTable>(table->data))
-            scenario.passed_over.push_back(parameter);
+            scenario.ignored.push_back(parameter);
     top.finish();
     physics::check(scenario.world);
 }

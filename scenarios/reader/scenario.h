@@ -61,7 +61,7 @@ struct RabBoard {
 };
 
 /// What a Linux board is late with, s. All zero: nothing. Only `oversleep` may be below 0.
-struct LinuxLateness {
+struct LinuxDelays {
     double tty_batch = 0.0;         ///< received bytes are handed on at whole multiples of this
     double i2c_hold = 0.0;          ///< each transfer waits so long for the bus
     double oversleep = 0.0;         ///< a sleep ends so much later than asked; below 0: earlier
@@ -90,7 +90,7 @@ struct LinuxBoard {
     std::string folder;               ///< to work in, below the results; empty: puckloop's own
     std::string end_signal = "TERM";  ///< when the run is to end
     double grace = 2.0;               ///< s from the end signal to SIGKILL
-    LinuxLateness late{};
+    LinuxDelays late{};
     std::vector<LinuxCamera> cameras{};
     std::int64_t save_frames = 0;  ///< every so-many-th frame of each camera is kept as a picture; 0: none
     int place_line = 0;
@@ -181,8 +181,7 @@ struct Scenario {
     std::optional<CoordinatorPlace> coordinator{};
     std::vector<CanBus> can_buses{};
     std::vector<cosim::FaultSpec> faults;
-    std::vector<std::string>
-        passed_over{};  ///< an overlay's [measurement]: of the measuring chain, not of a run
+    std::vector<std::string> ignored{};  ///< an overlay's [measurement]: of the measuring chain, not of a run
 };
 
 /// Reads and checks a scenario; paths in it are relative to its own folder. Throws InputError with file and

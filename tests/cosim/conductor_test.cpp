@@ -165,7 +165,7 @@ TEST_CASE("another seed is another trace") {
     CHECK(hashes.size() == 5);
 }
 
-TEST_CASE("a node's wish to stop ends the run at the same time in every placement") {
+TEST_CASE("a node's request to stop ends the run at the same time in every placement") {
     for (const int at_us : {1, 4000, 9999, 12345}) {
         Run run = toy::random_chatter(3, 4);
         run.nodes.push_back({"program", fmt::format("stopper at_us={} success=0", at_us)});

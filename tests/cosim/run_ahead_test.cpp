@@ -283,7 +283,7 @@ TEST_CASE("a node runs ahead no further than it can come back from") {
     CHECK(outbox == std::vector<Message>{said(700, 3)});
 }
 
-TEST_CASE("a wish to stop is known when its time is final") {
+TEST_CASE("a request to stop is known when its time is final") {
     Fixture f;
     f.counter->stop_at = 200;
     f.advance(150, 450);

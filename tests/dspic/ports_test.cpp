@@ -61,13 +61,13 @@ TEST_CASE_METHOD(PortsBench, "a byte write leaves the other half alone") {
     CHECK(pins.drives.back().levels == 0xABCD);
 }
 
-TEST_CASE_METHOD(PortsBench, "lent pins follow their module and come back") {
+TEST_CASE_METHOD(PortsBench, "pins taken over follow their module and come back") {
     write(sfr::LATG, 0x000C);
     write(sfr::TRISG, 0xF3C3);
     CHECK(pins.drives.back().driven == 0x000C);
-    ports.lend(PortLetter::G, 0x000C, 0, 0);
+    ports.take_over(PortLetter::G, 0x000C, 0, 0);
     CHECK(pins.drives.back().driven == 0);
-    ports.give_back(PortLetter::G, 0x000C);
+    ports.release(PortLetter::G, 0x000C);
     CHECK(pins.drives.back().driven == 0x000C);
     CHECK(pins.drives.back().levels == 0x000C);
 }

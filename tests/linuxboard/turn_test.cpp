@@ -129,7 +129,7 @@ TEST_CASE("completions that are too many for a channel come in parts") {
     });
     wire::Request request;
     std::string data;
-    CHECK(process.hear(5.0, request, data) == Heard::Request);
+    CHECK(process.hear(5.0, request, data) == ProcessEvent::Request);
     process.reply({}, calls);
     program.join();
     close(sockets[1]);
@@ -156,7 +156,7 @@ TEST_CASE("a process that dies while the node waits for it is noticed at once") 
     wire::Request request;
     std::string data;
     const auto start = std::chrono::steady_clock::now();
-    CHECK(process.hear(20.0, request, data) == Heard::Ended);
+    CHECK(process.hear(20.0, request, data) == ProcessEvent::Ended);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     CHECK(took.count() < 2.0);  // 55 ms on a machine that is not busy
     CHECK(process.killed_by() == SIGKILL);

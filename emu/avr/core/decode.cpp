@@ -52,7 +52,7 @@ const Op* loop_back(Machine& m, const Op* op) {
     const Op* next = kInstruction(m, op);
     if (next > op || !m.skip_idle) return next;
     LoopInfo& loop = m.loops[m.pc_of(op)];
-    if (loop.wait == 0) return leap(m, op, next);
+    if (loop.wait == 0) return skip_iterations(m, op, next);
     --loop.wait;
     return next;
 }

@@ -125,7 +125,7 @@ Core::Outcome run_until(Machine& m, Cycle until);
 void perform_reset(Machine& m, ResetCause cause);
 // fast/idle_loops.cpp
 /// At a taken backward branch: leaps over turns of an idle loop if it can. The operation to execute next.
-const Op* leap(Machine& m, const Op* branch, const Op* head);
+const Op* skip_iterations(Machine& m, const Op* branch, const Op* head);
 // memory.cpp
 std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address);
 void store_outside_ram(Machine& m, const Op* op, std::uint16_t address, std::uint8_t value,

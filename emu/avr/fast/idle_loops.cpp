@@ -18,7 +18,7 @@ constexpr std::uint8_t kMostPatience = 11, kImpatient = 8;
 
 }  // namespace
 
-const Op* leap(Machine& m, const Op* branch, const Op* head) {
+const Op* skip_iterations(Machine& m, const Op* branch, const Op* head) {
     LoopInfo& loop = m.loops[m.pc_of(branch)];
     const Cycle now = m.cycle + branch->cycles;  // the branch itself is over then
     if (m.limit <= now + kWorthwhile || now < m.quiet_since + kSettled) return head;
@@ -26,7 +26,7 @@ const Op* leap(Machine& m, const Op* branch, const Op* head) {
     m.cycle = now;
     ++m.instructions;
     const LaneWalk::Verdict verdict = LaneWalk(m).run(branch, head, loop);
-    if (verdict == LaneWalk::Verdict::Leapt)
+    if (verdict == LaneWalk::Verdict::Skipped)
         loop.patience = 0;
     else
         loop.patience = std::min<std::uint8_t>(

@@ -43,7 +43,7 @@ LaneWalk::Verdict LaneWalk::run(const Op* branch, const Op* head, LoopInfo& loop
     if (turns == 0) return Verdict::NotNow;
     commit(steady ? 0 : turns - 1, turns);
     if (steady) note_steady(branch, head);
-    return turns >= kFewestTurns || period_ == 0 ? Verdict::Leapt : Verdict::NotNow;
+    return turns >= kFewestTurns || period_ == 0 ? Verdict::Skipped : Verdict::NotNow;
 }
 
 /// A program that comes back to the same loop with the same registers has not left it, as far as one can see.

@@ -22,7 +22,7 @@ namespace puckloop::avr {
 
 class LaneWalk {
   public:
-    enum class Verdict : std::uint8_t { Leapt, NotNow, Never };
+    enum class Verdict : std::uint8_t { Skipped, NotNow, Never };
 
     explicit LaneWalk(Machine& m) : m_(m) {}
     /// The machine is at `head`, to which `branch` leads back; the branch is over. Executes as many turns as

@@ -24,7 +24,7 @@ void Ports::reset() {
     for (const PortLetter port : kAll) {
         Port& p = state_[index(port)];
         p.value_mask = {};
-        p.direction_mask = p.lent = 0;
+        p.direction_mask = p.taken_over = 0;
         drive(port);
     }
 }
@@ -37,8 +37,8 @@ void Ports::refresh() {
 // The drivers follow the registers and the overrides; then the levels follow the drivers.
 void Ports::drive(PortLetter port) {
     Port& p = state_[index(port)];
-    const auto driven =
-        static_cast<std::uint8_t>(merged(pin_register(port, kDdr), p.directions, p.direction_mask) & ~p.lent);
+    const auto driven = static_cast<std::uint8_t>(
+        merged(pin_register(port, kDdr), p.directions, p.direction_mask) & ~p.taken_over);
     std::uint8_t values = pin_register(port, kOutput);
     for (std::size_t user = 0; user < p.values.size(); ++user)
         values = merged(values, p.values[user], p.value_mask[user]);
@@ -58,10 +58,10 @@ void Ports::drive(PortLetter port) {
 // DIDRn, and whoever needs the pin for something analog: its digital input reads 0.
 std::uint8_t Ports::disabled_inputs(PortLetter port) const {
     constexpr int kAin0 = 2;  // PB2 and PB3
-    const std::uint8_t lent = state_[index(port)].lent;
-    if (port == PortLetter::A) return lent | around_.io.raw(kDidr0);
-    if (port == PortLetter::B) return static_cast<std::uint8_t>(lent | around_.io.raw(kDidr1) << kAin0);
-    return lent;
+    const std::uint8_t taken_over = state_[index(port)].taken_over;
+    if (port == PortLetter::A) return taken_over | around_.io.raw(kDidr0);
+    if (port == PortLetter::B) return static_cast<std::uint8_t>(taken_over | around_.io.raw(kDidr1) << kAin0);
+    return taken_over;
 }
 
 void Ports::pins_changed(PortLetter port) {
@@ -100,8 +100,8 @@ void Ports::release_direction(Pin pin) {
     assign(state_[index(pin.port)].direction_mask, pin.mask(), false);
     drive(pin.port);
 }
-void Ports::lend(PortLetter port, std::uint8_t mask, bool on) {
-    assign(state_[index(port)].lent, mask, on);
+void Ports::take_over(PortLetter port, std::uint8_t mask, bool on) {
+    assign(state_[index(port)].taken_over, mask, on);
     drive(port);
 }
 

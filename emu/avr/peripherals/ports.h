@@ -41,7 +41,7 @@ class Ports {
     void release_value(Pin pin, PinUser user);
     void release_direction(Pin pin);
     /// The pins of `mask` belong to an oscillator or to the debugger: no drivers, and they read 0.
-    void lend(PortLetter port, std::uint8_t mask, bool on);
+    void take_over(PortLetter port, std::uint8_t mask, bool on);
 
     /// Called after a level changed: levels before and after.
     using Listener = void (*)(void* owner, PortLetter port, std::uint8_t before, std::uint8_t after,
@@ -66,12 +66,12 @@ class Ports {
         Cycle changed = 0;
         std::array<std::uint8_t, 2> value_mask{}, values{};  ///< overridden outputs, by PinUser
         std::uint8_t direction_mask = 0, directions = 0;     ///< overridden directions
-        std::uint8_t lent = 0;                               ///< see lend()
+        std::uint8_t taken_over = 0;                         ///< see take_over()
         std::uint8_t shown_levels = 0, shown_driven = 0;     ///< as Pins::driven() last had them
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(levels, before, changed, value_mask, values, direction_mask, directions, lent,
+            archive(levels, before, changed, value_mask, values, direction_mask, directions, taken_over,
                     shown_levels, shown_driven);
         }
     };

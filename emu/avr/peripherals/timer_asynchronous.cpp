@@ -111,7 +111,7 @@ void Timer::write_status(void* owner, std::uint16_t address, std::uint8_t value,
     self.watch_->use_pin(on && pin);
     self.prescaler_.use_watch(on, self.around_.now);
     const auto both = static_cast<std::uint8_t>(self.setup_.watch_in.mask() | self.setup_.watch_out.mask());
-    self.ports_.lend(self.setup_.watch_in.port, both, on && !pin);
+    self.ports_.take_over(self.setup_.watch_in.port, both, on && !pin);
     if (on && pin)
         self.ports_.override_direction(self.setup_.watch_in, false);
     else

@@ -65,7 +65,7 @@ Chip::Parts::Parts(const DeviceInfo& device_info, Pins& board, const ChipOptions
       edges(events.add(this,
                        [](void* owner, Cycle due) {
                            Parts& parts = *static_cast<Parts*>(owner);
-                           parts.ports.look_at_heeded(due);
+                           parts.ports.sample_monitored(due);
                            parts.plan_edges(due);
                        })),
       supply(core, events, pins) {
@@ -147,12 +147,12 @@ void Chip::Parts::wire() {
         ports.watch(
             pin.port, pin.number, &timers[i],
             [](void* owner, bool level, Cycle at) { static_cast<Timer*>(owner)->clock_pin(level, at); },
-            [](const void* owner) { return static_cast<const Timer*>(owner)->heeds_clock_pin(); });
-        timers[i].on_heeding_owner = &ports;
-        timers[i].on_heeding = [](void* owner) { static_cast<Ports*>(owner)->heeding_changed(); };
+            [](const void* owner) { return static_cast<const Timer*>(owner)->monitors_clock_pin(); });
+        timers[i].on_monitoring_owner = &ports;
+        timers[i].on_monitoring = [](void* owner) { static_cast<Ports*>(owner)->monitoring_changed(); };
     }
-    ports.on_heeding_owner = this;
-    ports.on_heeding = [](void* owner, Cycle at) { static_cast<Parts*>(owner)->plan_edges(at); };
+    ports.on_monitoring_owner = this;
+    ports.on_monitoring = [](void* owner, Cycle at) { static_cast<Parts*>(owner)->plan_edges(at); };
     if (adc12)
         wire_converter(timer(layout.adc_timers[0]), &*adc12, [](void* owner, Cycle at) {
             static_cast<Adc12*>(owner)->trigger(Adc12::Trigger::Timer3, at);

@@ -59,7 +59,7 @@ void Chip::Parts::reset(ResetCause cause) {
     reset_all(ecans);
     interrupts.reset();
     held.reset();
-    ports.heeding_changed();
+    ports.monitoring_changed();
     supply.reset(cause);
 }
 

@@ -56,7 +56,7 @@ void list(Archive& archive, Machine& m) {
     archive.bounded(m.cycle_rate, 0.0, 1e10);
     archive(m.watchdog_cleared, m.doze.on, m.doze.recovers);
     archive.bounded(m.doze.ratio, 1, kSlowest);
-    archive.bounded(m.doze.owed, 0, kLongestExtra);
+    archive.bounded(m.doze.remaining_cycles, 0, kLongestExtra);
     archive(m.nvm.address, m.nvm.key_step);
     archive.fixed(m.nvm.latch);
     if constexpr (!Archive::kRaw) {  // see ProgramUndo

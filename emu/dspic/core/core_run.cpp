@@ -330,7 +330,7 @@ void perform_reset(Machine& m, ResetCause cause) {
     clear_watchdog(m);
     m.eligible = m.disi_waits = m.stopped = false;
     m.late = 0;
-    m.doze.owed = 0;
+    m.doze.remaining_cycles = 0;
     m.stall_end = 0;
     m.limit = 0;
     m.pass_pc.reset();
@@ -348,8 +348,8 @@ Core::Outcome run_until(Machine& m, Cycle until) {
             if (m.reset_request) continue;
         }
         if (m.end_requested || m.st.cycle >= until) return Core::Outcome::Until;
-        if (m.doze.owed > 0) [[unlikely]] {
-            pay_cycle(m);
+        if (m.doze.remaining_cycles > 0) [[unlikely]] {
+            consume_cycle(m);
             continue;
         }
         const Cycle quiet = std::min(until, m.events.next());

@@ -56,13 +56,13 @@ void stretch(Machine& m, Cycle began) {
     m.st.cycle = began;
     if (m.eligible) recover(m);
     m.st.cycle += m.doze.ratio;
-    m.doze.owed = cycles - 1;
+    m.doze.remaining_cycles = cycles - 1;
 }
 
-void pay_cycle(Machine& m) {
+void consume_cycle(Machine& m) {
     if (m.eligible) recover(m);
     m.st.cycle += m.doze.ratio;
-    --m.doze.owed;
+    --m.doze.remaining_cycles;
 }
 
 }  // namespace puckloop::dspic

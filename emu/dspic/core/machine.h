@@ -118,11 +118,11 @@ struct Machine {
     Cycle wake_end = kNoCycle;  ///< the oscillator starts, until then
     double cycle_rate = 0.0;    ///< 0: not set yet
     struct Doze {
-        bool on = false;        ///< CLKDIV<DOZEN>
-        bool recovers = false;  ///< CLKDIV<ROI>
-        Cycle ratio = 1;        ///< cycles in a CPU cycle
-        Cycle entry = 0;        ///< where the instruction began that set DOZEN
-        Cycle owed = 0;         ///< CPU cycles that the instruction under way still takes
+        bool on = false;             ///< CLKDIV<DOZEN>
+        bool recovers = false;       ///< CLKDIV<ROI>
+        Cycle ratio = 1;             ///< cycles in a CPU cycle
+        Cycle entry = 0;             ///< where the instruction began that set DOZEN
+        Cycle remaining_cycles = 0;  ///< CPU cycles that the instruction under way still takes
     } doze;
     EventQueue::Slot watchdog_slot = 0;
     Cycle watchdog_cleared = 0;
@@ -233,7 +233,7 @@ void recover(Machine& m);
 /// chip's.
 void stretch(Machine& m, Cycle began);
 /// One CPU cycle of those that the instruction under way still takes.
-void pay_cycle(Machine& m);
+void consume_cycle(Machine& m);
 // loop_advance.cpp
 /// Inside a waiting loop: goes on towards Machine::limit, exactly as executing would. False, and nothing
 /// done, if the machine is not where Machine::skip expects it.

@@ -3,15 +3,15 @@
 // n iterations of the loop, and holds for every n up to a bound that each use may lower. Memory and registers
 // are cells; a register of a module is a constant that the plan polls. What cannot be followed ends the walk.
 
-#include "emu/dspic/fast/followed.h"
 #include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/fast/symbolic_execution.h"
 
 #include <array>
 
 namespace puckloop::dspic {
 
-class AffineDomain : public Followed<AffineDomain> {
-    friend Followed<AffineDomain>;
+class AffineDomain : public SymbolicExecution<AffineDomain> {
+    friend SymbolicExecution<AffineDomain>;
 
   public:
     /// Unknown: an instruction that no walk will ever follow. NotNow: this state does not allow it.

@@ -11,13 +11,13 @@ namespace {
 constexpr std::uint64_t kFewestIterations = 2;
 constexpr std::size_t kMostServices = 4096;
 
-/// An interrupt that comes in during the leap.
+/// An interrupt that comes in during the skip.
 struct PassedService {
     std::uint32_t boundary = 0;
     std::uint64_t iteration = 0;  ///< counted from the leap's start
 };
 
-struct Leap {
+struct Skip {
     EventQueue::Slot slot = 0;
     EventQueue::Steady steady;
     const IsrSummary* summary = nullptr;
@@ -65,51 +65,51 @@ bool live_above_stack(const LoopTrace& trace, std::uint16_t depth) {
 }
 
 /// What the leap may pass; false if it may not begin.
-bool prepare(Machine& m, IdleLoops::Branch& known, Leap& leap) {
+bool prepare(Machine& m, IdleLoops::Branch& known, Skip& skip) {
     LoopTrace& trace = known.trace;
     if (!trace.steady || m.limit == 0 || m.mode != PowerMode::Run || m.eligible || m.disi_waits ||
         m.st.disi_end > m.st.cycle || m.st.sr & sr::RA || m.observer.on_interrupt)
         return false;
-    leap.slot = m.events.next_slot();
-    leap.due = m.events.next();
-    leap.steady = m.events.steady(leap.slot);
-    const int irq = leap.steady.irq;
-    if (leap.due == kNoCycle || irq < 0 || m.irq.tapped(irq) || m.irq.gated(irq) || !m.irq.enabled(irq) ||
+    skip.slot = m.events.next_slot();
+    skip.due = m.events.next();
+    skip.steady = m.events.steady(skip.slot);
+    const int irq = skip.steady.irq;
+    if (skip.due == kNoCycle || irq < 0 || m.irq.tapped(irq) || m.irq.gated(irq) || !m.irq.enabled(irq) ||
         m.irq.priority(irq) <= cpu_level(m))
         return false;
     if (m.irq.first().level != 0 || m.irq.any_enabled_flag()) return false;
-    leap.summary = isr_summary(m, irq + kTrapVectors);
-    if (!leap.summary || leap.summary->uses & m.watch & 0xFFFF0000 || !refreshes_hold(m, *leap.summary))
+    skip.summary = isr_summary(m, irq + kTrapVectors);
+    if (!skip.summary || skip.summary->uses & m.watch & 0xFFFF0000 || !refreshes_hold(m, *skip.summary))
         return false;
-    leap.horizon = std::min(m.until, m.events.next_except(leap.slot));
-    if (trace.depth < leap.summary->depth) {
-        trace.depth = leap.summary->depth;
+    skip.horizon = std::min(m.until, m.events.next_except(skip.slot));
+    if (trace.depth < skip.summary->depth) {
+        trace.depth = skip.summary->depth;
         trace.live = polls_interrupts(m, known.plan) || live_above_stack(trace, trace.depth);
     }
     if (trace.live) return false;
     for (const LoopTrace::Boundary& boundary : trace.boundaries)
-        if (!stack_holds(m, leap.summary->depth, boundary.w[15])) return false;
+        if (!stack_holds(m, skip.summary->depth, boundary.w[15])) return false;
     return true;
 }
 
 /// Follows loop and interrupts up to the last arrival before the horizon, at most `most` iterations on.
-void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival,
+void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Skip& skip, Cycle arrival,
               std::uint64_t most, std::vector<PassedService>& services) {
     const Cycle length = plan.cycles;
     Cycle base = arrival;  // when the iteration under way began, had it not been interrupted
-    Cycle due = leap.due;
+    Cycle due = skip.due;
     std::uint64_t iteration = 0;
-    leap.arrival = arrival;
+    skip.arrival = arrival;
     while (services.size() < kMostServices) {
-        const Cycle room = leap.horizon > base ? (leap.horizon - 1 - base) / length : 0;
+        const Cycle room = skip.horizon > base ? (skip.horizon - 1 - base) / length : 0;
         const auto commit = [&](std::uint64_t whole) {
             whole = std::min({whole, room, most - iteration});
             if (whole == 0) return;
-            leap.arrival = base + whole * length;
-            leap.iterations = iteration + whole;
-            leap.services = services.size();
+            skip.arrival = base + whole * length;
+            skip.iterations = iteration + whole;
+            skip.services = services.size();
         };
-        if (due >= leap.horizon) return commit(room);
+        if (due >= skip.horizon) return commit(room);
         // The first boundary after the flag is set.
         std::uint64_t whole = 0;
         std::size_t boundary = 0;
@@ -135,11 +135,11 @@ void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Leap& leap, C
         const Cycle begins = base + before.offset - (boundary != 0 ? 0 : length);
         if (begins == due && shortened_by_exception(*before.op)) return;
         const LoopTrace::Boundary& at = trace.boundaries[boundary];
-        const Cycle end = service_start(due, base + at.offset) + leap.summary->cycles;
-        if (end > leap.horizon || end > due + leap.steady.period) return;
+        const Cycle end = service_start(due, base + at.offset) + skip.summary->cycles;
+        if (end > skip.horizon || end > due + skip.steady.period) return;
         services.push_back({static_cast<std::uint32_t>(boundary), iteration});
         base = end - at.offset - (at.stall ? 1 : 0);
-        due += leap.steady.period;
+        due += skip.steady.period;
     }
 }
 
@@ -167,46 +167,46 @@ bool steady_event_next(Machine& m) {
 
 std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival,
                                    std::uint64_t iterations, bool& interrupted) {
-    Leap leap;
+    Skip skip;
     std::vector<PassedService> services;
-    if (!prepare(m, known, leap)) return kNoCycle;
-    simulate(known.plan, known.trace, leap, arrival, iterations, services);
-    interrupted = leap.services > 0;
-    return leap.iterations == iterations ? leap.arrival : kNoCycle;
+    if (!prepare(m, known, skip)) return kNoCycle;
+    simulate(known.plan, known.trace, skip, arrival, iterations, services);
+    interrupted = skip.services > 0;
+    return skip.iterations == iterations ? skip.arrival : kNoCycle;
 }
 
 bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
-    Leap leap;
-    if (!prepare(m, known, leap)) return false;
+    Skip skip;
+    if (!prepare(m, known, skip)) return false;
     static thread_local std::vector<PassedService> services;
     services.clear();
     const LoopTrace& trace = known.trace;
-    simulate(known.plan, trace, leap, arrival, known.plan.iterations - 1, services);
-    if (leap.iterations < kFewestIterations || leap.services == 0) return false;
+    simulate(known.plan, trace, skip, arrival, known.plan.iterations - 1, services);
+    if (skip.iterations < kFewestIterations || skip.services == 0) return false;
 
-    services.resize(leap.services);
+    services.resize(skip.services);
     for (const PassedService& service : services)
-        push_at(m, trace, *leap.summary, service);
+        push_at(m, trace, *skip.summary, service);
     // The last iteration in its order: what the loop writes, and what interrupts put over it afterwards.
     repeat_writes(m, trace, 0);
     for (const PassedService& service : services) {
-        if (service.iteration + 1 != leap.iterations) continue;
-        push_at(m, trace, *leap.summary, service);
+        if (service.iteration + 1 != skip.iterations) continue;
+        push_at(m, trace, *skip.summary, service);
         repeat_writes(m, trace, service.boundary);
     }
-    const int irq = leap.steady.irq;
+    const int irq = skip.steady.irq;
     m.irq.acknowledge({m.irq.priority(irq), irq + kTrapVectors}, cpu_level(m));
-    m.events.pass(leap.slot, leap.services);
-    m.watch &= leap.summary->keep | 0xFFFFu;
+    m.events.pass(skip.slot, skip.services);
+    m.watch &= skip.summary->keep | 0xFFFFu;
     m.repeat_first = true;
-    m.st.cycle += leap.arrival - arrival;
-    m.instructions += leap.iterations * known.plan.instructions + leap.services * leap.summary->instructions;
+    m.st.cycle += skip.arrival - arrival;
+    m.instructions += skip.iterations * known.plan.instructions + skip.services * skip.summary->instructions;
     m.limit = std::min(m.until, m.events.next());
-    known.plan.iterations -= leap.iterations;
+    known.plan.iterations -= skip.iterations;
     known.plan.used = true;
     ++m.skip->leaps;
-    m.skip->skipped_cycles += leap.arrival - arrival;
-    m.skip->passed_services += leap.services;
+    m.skip->skipped_cycles += skip.arrival - arrival;
+    m.skip->passed_services += skip.services;
     return true;
 }
 

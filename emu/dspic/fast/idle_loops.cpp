@@ -53,7 +53,7 @@ bool as_predicted(Machine& m, const IdleLoops::Plan& plan, Cycle arrival) {
 
 /// Leaps over as many iterations as the plan and the limit allow, less one. True if the limit decided: then
 /// the real iteration that follows is over before the limit, and the next one is not.
-bool leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
+bool skip_iterations(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     if (m.limit < arrival) return false;
     const std::uint64_t room = (m.limit - arrival) / plan.cycles;
     if (room < 2 || plan.iterations < 2) return false;
@@ -185,8 +185,8 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
                 plan.used = true;
                 return;
             }
-            if (!forwarded) to_limit = leap(m, plan, arrival);
-            note_leap(m, branch);
+            if (!forwarded) to_limit = skip_iterations(m, plan, arrival);
+            note_skip(m, branch);
             plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
             plan.advance(1);  // the real iteration that follows
             // At its end nothing can be gained: only the arrival after that one is looked at.

@@ -333,7 +333,7 @@ bool PathDomain::may_close_loop(const Op* op) const {
 }
 
 const Op* PathDomain::branch(const Op* op, bool conditional) {
-    const Op* const next = Followed::branch(op, conditional);
+    const Op* const next = SymbolicExecution::branch(op, conditional);
     if (may_close_loop(op)) arrive(op, next, instruction_ + (conditional ? 1 : 0));
     return next;
 }

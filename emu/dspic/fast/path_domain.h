@@ -5,8 +5,8 @@
 // a flag that hangs on it, the path gets a condition on that word under which the outcome is the same. It
 // leaves by an exception where the routine does more than a path can hold.
 
-#include "emu/dspic/fast/followed.h"
 #include "emu/dspic/fast/isr_path.h"
+#include "emu/dspic/fast/symbolic_execution.h"
 
 #include <array>
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace puckloop::dspic {
 
-class PathDomain : public FollowedRoutine<PathDomain> {
-    friend Followed<PathDomain>;
-    friend FollowedRoutine<PathDomain>;
+class PathDomain : public SymbolicRoutine<PathDomain> {
+    friend SymbolicExecution<PathDomain>;
+    friend SymbolicRoutine<PathDomain>;
 
   public:
     struct Value {

@@ -4,17 +4,17 @@
 // interrupted stack pointer, constants. It leaves by an exception where the routine does more than a summary
 // can say.
 
-#include "emu/dspic/fast/followed.h"
 #include "emu/dspic/fast/isr_summary.h"
+#include "emu/dspic/fast/symbolic_execution.h"
 
 #include <array>
 #include <vector>
 
 namespace puckloop::dspic {
 
-class SymbolicIsr : public FollowedRoutine<SymbolicIsr> {
-    friend Followed<SymbolicIsr>;
-    friend FollowedRoutine<SymbolicIsr>;
+class SymbolicIsr : public SymbolicRoutine<SymbolicIsr> {
+    friend SymbolicExecution<SymbolicIsr>;
+    friend SymbolicRoutine<SymbolicIsr>;
 
   public:
     using Word = IsrSummary::Word;

@@ -126,17 +126,17 @@ void CanLine::enter_mode(Cycle at) {
         show_errors();
     }
     take_role(at);
-    lend_pins(at);
+    take_over_pins(at);
     look_for_frame(at);
 }
 
-void CanLine::lend_pins(Cycle at) {
+void CanLine::take_over_pins(Cycle at) {
     const std::uint16_t rx = bit(place_.rx), tx = bit(place_.tx);
     const bool off = mode() == Mode::Configuration || mode() == Mode::Disable;
     if (off)
-        ports_.give_back(place_.port, rx | tx);
+        ports_.release(place_.port, rx | tx);
     else
-        ports_.lend(place_.port, rx | tx, tx, tx, at);
+        ports_.take_over(place_.port, rx | tx, tx, tx, at);
 }
 
 // ---- transmission

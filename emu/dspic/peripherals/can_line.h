@@ -125,7 +125,7 @@ class CanLine {
     Cycle bits(Cycle count) const { return (count * bit_quarters() + 3) / 4; }
     void request_mode(Cycle at);
     void enter_mode(Cycle at);
-    void lend_pins(Cycle at);
+    void take_over_pins(Cycle at);
     void abort(int buffer);
     int best_buffer() const;
     void look_for_frame(Cycle at);

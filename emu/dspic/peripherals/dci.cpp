@@ -90,16 +90,16 @@ unsigned Dci::in_use() const {
     return kDCICON2["BLEN"].of(reg(kCon2)) + 1;
 }
 
-void Dci::lend_pins() {
+void Dci::take_over_pins() {
     const auto all =
         static_cast<std::uint16_t>(bit(setup_.csdi) | bit(setup_.csdo) | bit(setup_.csck) | bit(setup_.cofs));
-    ports_.give_back(setup_.port, all);
+    ports_.release(setup_.port, all);
     const unsigned con1 = reg(kCon1);
     if (!(con1 & kDCICON1["DCIEN"])) return;
     std::uint16_t output = bit(setup_.csdo);
     if (!(con1 & kDCICON1["CSCKD"])) output |= bit(setup_.csck);
     if (!(con1 & kDCICON1["COFSD"])) output |= bit(setup_.cofs);
-    ports_.lend(setup_.port, all, output, 0);
+    ports_.take_over(setup_.port, all, output, 0);
 }
 
 /// DJST = 0: data begin one bit behind the frame sync, in every frame.
@@ -333,9 +333,9 @@ void Dci::write_con1(void* owner, std::uint16_t address, std::uint16_t value, st
         self.state_.held = old.held;
         self.state_.written = old.written;
         self.reg(kStat) = 0;
-        return self.lend_pins();
+        return self.take_over_pins();
     }
-    self.lend_pins();
+    self.take_over_pins();
     self.start(self.around_.now + 1);
 }
 

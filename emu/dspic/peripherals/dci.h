@@ -137,7 +137,7 @@ class Dci {
     Cycle event() const;
     void exchange(Cycle at);
     void swap(Cycle at, bool interrupt);
-    void lend_pins();
+    void take_over_pins();
     std::uint16_t& reg(int offset) const {
         return around_.sfr.raw(static_cast<std::uint16_t>(setup_.con1 + offset));
     }

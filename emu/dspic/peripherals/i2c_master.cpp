@@ -232,9 +232,9 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     if ((old ^ con) & kI2CxCON["I2CEN"]) {
         const auto pins = static_cast<std::uint16_t>(bit(self.setup_.scl) | bit(self.setup_.sda));
         if (con & kI2CxCON["I2CEN"]) {
-            self.ports_.lend(self.setup_.port, pins, 0, 0);
+            self.ports_.take_over(self.setup_.port, pins, 0, 0);
         } else {
-            self.ports_.give_back(self.setup_.port, pins);
+            self.ports_.release(self.setup_.port, pins);
             self.switch_off();
         }
     }

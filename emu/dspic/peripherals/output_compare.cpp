@@ -96,11 +96,11 @@ void OutputCompare::tell(std::size_t index, Cycle at) {
 void OutputCompare::drive(std::size_t index, Cycle at) {
     const std::uint16_t pin = bit(units_[index].pin);
     if (mode(index) == kOff)
-        ports_.give_back(units_[index].port, pin);
+        ports_.release(units_[index].port, pin);
     else if (faulted(index))
-        ports_.lend(units_[index].port, pin, 0, 0, at);
+        ports_.take_over(units_[index].port, pin, 0, 0, at);
     else
-        ports_.lend(units_[index].port, pin, pin, states_[index].level ? pin : 0, at);
+        ports_.take_over(units_[index].port, pin, pin, states_[index].level ? pin : 0, at);
 }
 
 void OutputCompare::begin(std::size_t index) {

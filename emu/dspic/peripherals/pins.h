@@ -48,10 +48,11 @@ class Pins {
     virtual std::uint16_t levels(PortLetter port, Cycle now) = 0;
     /// The same for who is no part of what is simulated (reports, watches): changes nothing.
     virtual std::uint16_t quiet_levels(PortLetter port, Cycle now) { return levels(port, now); }
-    /// The next cycle after `after` at which the board, by itself, may change one of the pins `heeded`, whose
-    /// edges the chip notices; levels() then gives them. Pins that nobody heeds may change between events:
-    /// levels() is asked where a program reads them. To be followed by Chip::edges_moved() when it changes.
-    virtual Cycle next_edge(PortLetter port, std::uint16_t heeded, Cycle after) const;
+    /// The next cycle after `after` at which the board, by itself, may change one of the pins `monitored`,
+    /// whose edges the chip notices; levels() then gives them. Pins that nobody monitors may change between
+    /// events: levels() is asked where a program reads them. To be followed by Chip::edges_moved() when it
+    /// changes.
+    virtual Cycle next_edge(PortLetter port, std::uint16_t monitored, Cycle after) const;
     /// Voltage on analog input AN`channel` at this instant, as a fraction of the ADC's reference span; the
     /// ADC clips. May be asked somewhat after that cycle, but always before anything that the chip drives
     /// changes and before its run_until() returns; calls come in time order among themselves.

@@ -44,7 +44,7 @@ void Ports::reset() {
     for (int i = 0; i < kPorts; ++i) {
         Port& port = ports_[static_cast<std::size_t>(i)];
         if (!port.tris) continue;
-        port.lent = 0;
+        port.taken_over = 0;
         drive(i, around_.now);
         port.noticed = pin_levels(i, around_.now);
         port.seen = static_cast<std::uint16_t>(port.noticed & port.watched);
@@ -53,21 +53,21 @@ void Ports::reset() {
         watcher.changed(watcher.owner, at(watcher.port).seen & watcher.mask, kNoCycle);
 }
 
-// What a board changes by itself is looked at only while somebody heeds it, so a pin that was not heeded may
-// be at another level than when it was last seen: that is no edge.
-void Ports::heeding_changed() {
-    std::array<std::uint16_t, kPorts> heeded{};
+// What a board changes by itself is looked at only while somebody monitors it, so a pin that was not
+// monitored may be at another level than when it was last seen: that is no edge.
+void Ports::monitoring_changed() {
+    std::array<std::uint16_t, kPorts> monitored{};
     for (const Watcher& watcher : watchers_)
-        if (!watcher.heeds || watcher.heeds(watcher.owner))
-            heeded[static_cast<std::size_t>(watcher.port)] |= watcher.mask;
+        if (!watcher.monitors || watcher.monitors(watcher.owner))
+            monitored[static_cast<std::size_t>(watcher.port)] |= watcher.mask;
     bool other = false;
     for (int i = 0; i < kPorts; ++i) {
         Port& port = ports_[static_cast<std::size_t>(i)];
         const auto now = static_cast<std::uint16_t>(
-            (heeded[static_cast<std::size_t>(i)] | change_enabled(i)) & port.watched);
-        if (now == port.heeded) continue;
-        const auto fresh = static_cast<std::uint16_t>(now & ~port.heeded);
-        port.heeded = now;
+            (monitored[static_cast<std::size_t>(i)] | change_enabled(i)) & port.watched);
+        if (now == port.monitored) continue;
+        const auto fresh = static_cast<std::uint16_t>(now & ~port.monitored);
+        port.monitored = now;
         other = true;
         const auto moved = static_cast<std::uint16_t>((pin_levels(i, around_.now) ^ port.seen) & fresh);
         if (!moved) continue;
@@ -76,20 +76,20 @@ void Ports::heeding_changed() {
             if (static_cast<int>(watcher.port) == i && (moved & watcher.mask))
                 watcher.changed(watcher.owner, port.seen & watcher.mask, kNoCycle);
     }
-    if (other && on_heeding) on_heeding(on_heeding_owner, around_.now);
+    if (other && on_monitoring) on_monitoring(on_monitoring_owner, around_.now);
 }
 
 Cycle Ports::next_edge(Cycle after) const {
     Cycle next = kNoCycle;
     for (int i = 0; i < kPorts; ++i)
-        if (const std::uint16_t heeded = ports_[static_cast<std::size_t>(i)].heeded)
-            next = std::min(next, pins_.next_edge(static_cast<PortLetter>(i), heeded, after));
+        if (const std::uint16_t monitored = ports_[static_cast<std::size_t>(i)].monitored)
+            next = std::min(next, pins_.next_edge(static_cast<PortLetter>(i), monitored, after));
     return next;
 }
 
-void Ports::look_at_heeded(Cycle at) {
+void Ports::sample_monitored(Cycle at) {
     for (int i = 0; i < kPorts; ++i)
-        if (ports_[static_cast<std::size_t>(i)].heeded) look(i, at);
+        if (ports_[static_cast<std::size_t>(i)].monitored) look(i, at);
 }
 
 // What the input buffers see, analog pins included.
@@ -117,12 +117,15 @@ bool Ports::level(PortLetter port, int pin) const {
 // Tells the board what the drivers do, if that changed.
 void Ports::drive(int index, Cycle when) {
     Port& port = ports_[static_cast<std::size_t>(index)];
-    const unsigned own = static_cast<unsigned>(~around_.sfr.raw(port.tris) & port.implemented & ~port.lent);
+    const unsigned own =
+        static_cast<unsigned>(~around_.sfr.raw(port.tris) & port.implemented & ~port.taken_over);
     const std::uint16_t lat = around_.sfr.raw(port.lat);
     // An open-drain output only pulls down.
     const unsigned released = port.odc ? around_.sfr.raw(port.odc) & lat : 0u;
-    const auto driven = static_cast<std::uint16_t>((own & ~released) | (port.lent & port.lent_output));
-    const auto levels = static_cast<std::uint16_t>((lat & own & driven) | (port.lent_levels & driven & ~own));
+    const auto driven =
+        static_cast<std::uint16_t>((own & ~released) | (port.taken_over & port.taken_over_output));
+    const auto levels =
+        static_cast<std::uint16_t>((lat & own & driven) | (port.taken_over_levels & driven & ~own));
     if (driven == port.driven && levels == port.levels) return;
     port.driven = driven;
     port.levels = levels;
@@ -159,27 +162,27 @@ void Ports::outside_changed(PortLetter port, Cycle when) {
     if (at(port).watched) look(static_cast<int>(port), when);
 }
 
-void Ports::lend(PortLetter letter, std::uint16_t mask, std::uint16_t output, std::uint16_t levels,
-                 Cycle when) {
+void Ports::take_over(PortLetter letter, std::uint16_t mask, std::uint16_t output, std::uint16_t levels,
+                      Cycle when) {
     announce();
     Port& port = at(letter);
-    port.lent |= mask;
-    port.lent_output = static_cast<std::uint16_t>((port.lent_output & ~mask) | (output & mask));
-    port.lent_levels = static_cast<std::uint16_t>((port.lent_levels & ~mask) | (levels & mask));
+    port.taken_over |= mask;
+    port.taken_over_output = static_cast<std::uint16_t>((port.taken_over_output & ~mask) | (output & mask));
+    port.taken_over_levels = static_cast<std::uint16_t>((port.taken_over_levels & ~mask) | (levels & mask));
     drive(static_cast<int>(letter), when);
 }
 
-void Ports::give_back(PortLetter letter, std::uint16_t mask) {
+void Ports::release(PortLetter letter, std::uint16_t mask) {
     announce();
     Port& port = at(letter);
-    port.lent = static_cast<std::uint16_t>(port.lent & ~mask);
+    port.taken_over = static_cast<std::uint16_t>(port.taken_over & ~mask);
     drive(static_cast<int>(letter), around_.now + 1);
 }
 
 void Ports::watch(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle),
-                  bool (*heeds)(const void*)) {
+                  bool (*monitors)(const void*)) {
     at(letter).watched |= bit(pin);
-    watchers_.push_back({letter, bit(pin), owner, changed, heeds});
+    watchers_.push_back({letter, bit(pin), owner, changed, monitors});
 }
 
 void Ports::listen(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle)) {
@@ -191,7 +194,7 @@ void Ports::attend(PortLetter letter, int pin) {
     if (port.watched & bit(pin)) return;
     port.watched |= bit(pin);
     port.seen |= static_cast<std::uint16_t>(level(letter, pin) ? bit(pin) : 0);
-    heeding_changed();
+    monitoring_changed();
 }
 
 bool Ports::digital_level(PortLetter letter, int pin) const {
@@ -287,7 +290,7 @@ void Ports::write_cn(void* owner, std::uint16_t address, std::uint16_t value, st
         if (enabled & 1u) self.attend(pin.port, pin.number);
         enabled >>= 1;
     }
-    self.heeding_changed();
+    self.monitoring_changed();
 }
 
 }  // namespace puckloop::dspic

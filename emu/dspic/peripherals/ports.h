@@ -1,14 +1,15 @@
 #pragma once
-// I/O ports: TRISx, PORTx, LATx, analog pins, pins lent to other modules; input change notification (CN);
-// and watched pins for the modules that count or trigger on edges.
-// Source: dsPIC30F Family Reference Manual, section 11, and DS70286; fact sheet peripherals.md section 9.
+// I/O ports: TRISx, PORTx, LATx, analog pins, pins that other modules take over; input change notification
+// (CN); and watched pins for the modules that count or trigger on edges. Source: dsPIC30F Family Reference
+// Manual, section 11, and DS70286; fact sheet peripherals.md section 9.
 //
 // Deviations
 //  1. A PORTx read in the instruction right after a write sees the new level; silicon wants one instruction
 //     between.
 //  2. Pins change one cycle after the start of the writing instruction, all at once, without slew or
 //     contention.
-//  3. A pin lent to a UART or I2C module rests at its idle level; frames travel as messages, not as levels.
+//  3. A pin taken over by a UART or I2C module rests at its idle level; frames travel as messages, not as
+//  levels.
 //  4. CN pull-ups are stored; what an open pin reads is the board's affair.
 
 #include "emu/dspic/peripherals/pins.h"
@@ -53,27 +54,29 @@ class Ports {
     /// The outside changed levels on `port` at cycle `at`.
     void outside_changed(PortLetter port, Cycle at);
     /// Takes pins away from LAT and TRIS: `output` of them are driven at `levels`, the rest are released.
-    void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels) {
-        lend(port, mask, output, levels, around_.now + 1);
+    void take_over(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels) {
+        take_over(port, mask, output, levels, around_.now + 1);
     }
     /// The same, from an event that was due at cycle `when`.
-    void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels, Cycle when);
-    void give_back(PortLetter port, std::uint16_t mask);
-    /// Pins that are lent at present.
-    std::uint16_t lent(PortLetter port) const { return at(port).lent; }
-    /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset, and where `heeds`
-    /// becomes true, with `at` = kNoCycle: there the level is just given. `heeds`: whether edges make a
-    /// difference just now, to be followed by heeding_changed() when that changes; without it they always do.
+    void take_over(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels,
+                   Cycle when);
+    void release(PortLetter port, std::uint16_t mask);
+    /// Pins that are taken over at present.
+    std::uint16_t taken_over(PortLetter port) const { return at(port).taken_over; }
+    /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset, and where
+    /// `monitors` becomes true, with `at` = kNoCycle: there the level is just given. `monitors`: whether
+    /// edges make a difference just now, to be followed by monitoring_changed() when that changes; without it
+    /// they always do.
     void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at),
-               bool (*heeds)(const void* owner) = nullptr);
-    void heeding_changed();
-    /// The next cycle after `after` at which the board itself may change a pin whose edges are heeded.
+               bool (*monitors)(const void* owner) = nullptr);
+    void monitoring_changed();
+    /// The next cycle after `after` at which the board itself may change a pin whose edges are monitored.
     Cycle next_edge(Cycle after) const;
     /// The board may have changed such pins at cycle `at`.
-    void look_at_heeded(Cycle at);
-    /// Called when heeding_changed() found other pins than before; may stay empty.
-    void (*on_heeding)(void* owner, Cycle at) = nullptr;
-    void* on_heeding_owner = nullptr;
+    void sample_monitored(Cycle at);
+    /// Called when monitoring_changed() found other pins than before; may stay empty.
+    void (*on_monitoring)(void* owner, Cycle at) = nullptr;
+    void* on_monitoring_owner = nullptr;
     /// As watch(), but edges are called out only after attend(); those of CN and other modules' pins may be,
     /// too.
     void listen(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
@@ -111,19 +114,20 @@ class Ports {
         std::uint16_t odc = 0;
         std::uint16_t implemented = 0;
         std::uint16_t analog = 0;  ///< pins that can be analog inputs
-        std::uint16_t lent = 0;
-        std::uint16_t lent_output = 0;
-        std::uint16_t lent_levels = 0;
-        std::uint16_t driven = 0;   ///< as last given to the board
-        std::uint16_t levels = 0;   ///< as last given to the board
-        std::uint16_t watched = 0;  ///< pins with a watcher or CN input
-        std::uint16_t seen = 0;     ///< levels of the watched pins when last looked at
-        std::uint16_t noticed = 0;  ///< pin levels at the last PORT read, what CN compares with
-        std::uint16_t heeded = 0;   ///< watched pins whose edges make a difference
+        std::uint16_t taken_over = 0;
+        std::uint16_t taken_over_output = 0;
+        std::uint16_t taken_over_levels = 0;
+        std::uint16_t driven = 0;     ///< as last given to the board
+        std::uint16_t levels = 0;     ///< as last given to the board
+        std::uint16_t watched = 0;    ///< pins with a watcher or CN input
+        std::uint16_t seen = 0;       ///< levels of the watched pins when last looked at
+        std::uint16_t noticed = 0;    ///< pin levels at the last PORT read, what CN compares with
+        std::uint16_t monitored = 0;  ///< watched pins whose edges make a difference
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(lent, lent_output, lent_levels, driven, levels, watched, seen, noticed, heeded);
+            archive(taken_over, taken_over_output, taken_over_levels, driven, levels, watched, seen, noticed,
+                    monitored);
         }
     };
     struct Watcher {
@@ -131,7 +135,7 @@ class Ports {
         std::uint16_t mask = 0;
         void* owner = nullptr;
         void (*changed)(void*, bool, Cycle) = nullptr;
-        bool (*heeds)(const void*) = nullptr;
+        bool (*monitors)(const void*) = nullptr;
     };
 
     static std::uint16_t look_at_port(void* owner, std::uint16_t address);

@@ -73,25 +73,26 @@ void Spi::hold(bool on) {
 
 // Between a master's words SCK and SDO rest, SCK at its idle level. A slave's SDO is driven while it is
 // selected.
-void Spi::lend_pins(Cycle at) {
+void Spi::take_over_pins(Cycle at) {
     const std::uint16_t sck = bit(setup_.sck);
     const std::uint16_t sdo = bit(setup_.sdo);
     const auto all = static_cast<std::uint16_t>(sck | bit(setup_.sdi) | sdo);
     const std::uint16_t ss = bit(setup_.ss.number);
-    ports_.give_back(setup_.port, all);
+    ports_.release(setup_.port, all);
     if (!enabled() || !uses_select()) {
-        if (ports_.lent(setup_.ss.port) & ss) ports_.give_back(setup_.ss.port, ss);
+        if (ports_.taken_over(setup_.ss.port) & ss) ports_.release(setup_.ss.port, ss);
     } else {
         const bool gives = framed() && !frame_slave();
-        ports_.lend(setup_.ss.port, ss, gives ? ss : 0, state_.pulse == pulse_high() ? ss : 0, at);
+        ports_.take_over(setup_.ss.port, ss, gives ? ss : 0, state_.pulse == pulse_high() ? ss : 0, at);
     }
     if (!enabled()) return;
-    std::uint16_t lent = all;
-    if (setup_.con2 && (con() & kClock33F["DISSCK"])) lent = static_cast<std::uint16_t>(lent & ~sck);
-    if (con() & kSPIxCON["DISSDO"]) lent = static_cast<std::uint16_t>(lent & ~sdo);
-    std::uint16_t output = lent & static_cast<std::uint16_t>((master() ? sck : 0) | sdo);
+    std::uint16_t taken_over = all;
+    if (setup_.con2 && (con() & kClock33F["DISSCK"]))
+        taken_over = static_cast<std::uint16_t>(taken_over & ~sck);
+    if (con() & kSPIxCON["DISSDO"]) taken_over = static_cast<std::uint16_t>(taken_over & ~sdo);
+    std::uint16_t output = taken_over & static_cast<std::uint16_t>((master() ? sck : 0) | sdo);
     if (!master() && !slave_drives()) output = static_cast<std::uint16_t>(output & ~sdo);
-    ports_.lend(setup_.port, lent, output, con() & kSPIxCON["CKP"] ? sck : 0, at);
+    ports_.take_over(setup_.port, taken_over, output, con() & kSPIxCON["CKP"] ? sck : 0, at);
 }
 
 // ---- master
@@ -118,12 +119,12 @@ void Spi::due(void* owner, Cycle due) {
     if (state.pulse_at == due) {  // the pulse of the frame begins, one clock long
         state.pulse_at = kNoCycle;
         state.pulse = true;
-        self.lend_pins(due);
+        self.take_over_pins(due);
         return self.around_.events.schedule(self.slot_, due + self.clock_cycles());
     }
     if (state.pulse) {
         state.pulse = false;
-        self.lend_pins(due);
+        self.take_over_pins(due);
         if (due < state.word_end) return self.around_.events.schedule(self.slot_, state.word_end);
     }
     const int bits = self.bits();
@@ -189,7 +190,7 @@ void Spi::write_stat(void* owner, std::uint16_t, std::uint16_t value, std::uint1
     }
     self.state_.phase = self.around_.now + 1;
     self.attend_slave();
-    self.lend_pins(self.around_.now + 1);
+    self.take_over_pins(self.around_.now + 1);
 }
 
 void Spi::write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
@@ -197,7 +198,7 @@ void Spi::write_con(void* owner, std::uint16_t address, std::uint16_t value, std
     self.around_.sfr.store(address, value, mask);
     if (!self.enabled()) return;
     self.attend_slave();
-    self.lend_pins(self.around_.now + 1);
+    self.take_over_pins(self.around_.now + 1);
 }
 
 }  // namespace puckloop::dspic

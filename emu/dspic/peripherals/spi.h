@@ -85,7 +85,7 @@ class Spi {
     int bits() const;
     Cycle clock_cycles() const;
     void begin(std::uint16_t value, Cycle from);
-    void lend_pins(Cycle at);
+    void take_over_pins(Cycle at);
     void finish_word(std::uint16_t got, Cycle at);
     std::uint16_t& stat() const { return around_.sfr.raw(setup_.stat); }
     std::uint16_t con() const { return around_.sfr.raw(static_cast<std::uint16_t>(setup_.stat + 2)); }

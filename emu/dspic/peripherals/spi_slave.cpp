@@ -45,7 +45,7 @@ void Spi::drive_bit(Cycle at) {
     const std::uint16_t sdo = bit(setup_.sdo);
     if (con() & kSPIxCON["DISSDO"]) return;
     const bool one = state_.shift >> (bits() - 1) & 1;
-    ports_.lend(setup_.port, sdo, slave_drives() ? sdo : 0, one ? sdo : 0, at);
+    ports_.take_over(setup_.port, sdo, slave_drives() ? sdo : 0, one ? sdo : 0, at);
 }
 
 void Spi::clock_edge(void* owner, bool level, Cycle at) {

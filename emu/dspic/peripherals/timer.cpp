@@ -31,7 +31,7 @@ void Timer::reset() {
 bool Timer::paired() const {
     return upper_ && (con() & kTxCON["T32"]);
 }
-bool Timer::ruled_by_lower() const {
+bool Timer::is_upper_half() const {
     return lower_ && lower_->paired();
 }
 int Timer::irq() const {
@@ -46,11 +46,11 @@ bool Timer::synchronised() const {
 bool Timer::gated() const {
     return !external() && (con() & kTxCON["TGATE"]);
 }
-bool Timer::heeds_clock_pin() const {
-    return (con() & kTxCON["TON"]) && !ruled_by_lower() && (external() || gated());
+bool Timer::monitors_clock_pin() const {
+    return (con() & kTxCON["TON"]) && !is_upper_half() && (external() || gated());
 }
 bool Timer::running() const {
-    return (con() & kTxCON["TON"]) && !state_.held && !ruled_by_lower() && !external() &&
+    return (con() & kTxCON["TON"]) && !state_.held && !is_upper_half() && !external() &&
            (!gated() || state_.pin);
 }
 std::uint32_t Timer::prescale() const {
@@ -183,7 +183,7 @@ void Timer::clock_pin(bool level, Cycle at) {
         state_.pin = level;
         return;
     }
-    if ((con() & kTxCON["TON"]) && !ruled_by_lower()) {
+    if ((con() & kTxCON["TON"]) && !is_upper_half()) {
         if (gated()) {
             settle(at);
             if (!level) match(at);
@@ -209,7 +209,7 @@ void Timer::hold(bool on) {
 
 void Timer::refresh() {
     std::uint16_t& stored = around_.sfr.raw(setup_.tmr);
-    if (ruled_by_lower())
+    if (is_upper_half())
         stored = static_cast<std::uint16_t>(lower_->count_at(around_.now) >> 16);
     else
         stored = static_cast<std::uint16_t>(count_at(around_.now));
@@ -226,7 +226,7 @@ std::uint16_t Timer::read_tmr(void* owner, std::uint16_t) {
 
 void Timer::write_tmr(void* owner, std::uint16_t, std::uint16_t value, std::uint16_t mask) {
     Timer& self = *static_cast<Timer*>(owner);
-    if (self.ruled_by_lower()) return;
+    if (self.is_upper_half()) return;
     self.settle(self.around_.now + 1);
     const std::uint16_t low = merge(static_cast<std::uint16_t>(self.state_.count), value, mask);
     self.state_.count = low;
@@ -239,7 +239,7 @@ void Timer::write_tmr(void* owner, std::uint16_t, std::uint16_t value, std::uint
 
 void Timer::write_pr(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Timer& self = *static_cast<Timer*>(owner);
-    Timer& counting = self.ruled_by_lower() ? *self.lower_ : self;
+    Timer& counting = self.is_upper_half() ? *self.lower_ : self;
     counting.settle(self.around_.now + 1);
     self.around_.sfr.store(address, value, mask);
     counting.plan();
@@ -267,7 +267,7 @@ void Timer::write_con(void* owner, std::uint16_t address, std::uint16_t value, s
     if (self.upper_) self.upper_->plan();
     self.changed(at);
     if (self.upper_) self.upper_->changed(at);
-    if (self.on_heeding) self.on_heeding(self.on_heeding_owner);
+    if (self.on_monitoring) self.on_monitoring(self.on_monitoring_owner);
 }
 
 }  // namespace puckloop::dspic

@@ -36,10 +36,10 @@ class Timer {
     /// The TxCK pin changed to `level` at cycle `at`; kNoCycle: no edge, just the level after a reset.
     void clock_pin(bool level, Cycle at);
     /// Edges on TxCK make a difference at present: it counts them, or they gate it.
-    bool heeds_clock_pin() const;
-    /// Called after every write that may have changed heeds_clock_pin(); may stay empty.
-    void (*on_heeding)(void* owner) = nullptr;
-    void* on_heeding_owner = nullptr;
+    bool monitors_clock_pin() const;
+    /// Called after every write that may have changed monitors_clock_pin(); may stay empty.
+    void (*on_monitoring)(void* owner) = nullptr;
+    void* on_monitoring_owner = nullptr;
     /// Sleep, or Idle with TSIDL set: the count stands still, but for edges counted without
     /// synchronisation.
     void hold(bool on);
@@ -53,7 +53,7 @@ class Timer {
     // For the modules whose time base it is.
     /// TMRx at cycle `at`, now or to come, while nobody writes to the timer.
     std::uint16_t value_at(Cycle at) const {
-        return static_cast<std::uint16_t>(ruled_by_lower() ? lower_->count_at(at) >> 16 : count_at(at));
+        return static_cast<std::uint16_t>(is_upper_half() ? lower_->count_at(at) >> 16 : count_at(at));
     }
     /// The internal clock is counted at present.
     bool counts() const { return running(); }
@@ -113,7 +113,7 @@ class Timer {
     void watch_flag();  ///< to be woken when a match would change something
 
     bool paired() const;           ///< this lower timer counts 32 bits
-    bool ruled_by_lower() const;   ///< this upper timer is the high word of a pair
+    bool is_upper_half() const;    ///< this upper timer is the high word of a pair
     int irq() const;               ///< that a match raises
     bool external() const;         ///< counts edges of TxCK
     bool synchronised() const;     ///< edges of TxCK need the instruction clock

@@ -108,17 +108,17 @@ void Uart::hold(bool on) {
     show_transmitter();
 }
 
-void Uart::lend_pins() {
+void Uart::take_over_pins() {
     const std::uint16_t rx = bit(setup_.rx_pin);
     const std::uint16_t tx = bit(setup_.tx_pin);
     if (!enabled()) {
-        ports_.give_back(setup_.port, rx | tx);
+        ports_.release(setup_.port, rx | tx);
     } else if (sta() & kUxSTA["UTXEN"]) {
         const bool low = setup_.family_33f ? idles_low() : (sta() & kUxSTA["UTXBRK"]) != 0;
-        ports_.lend(setup_.port, rx | tx, tx, low ? 0 : tx);
+        ports_.take_over(setup_.port, rx | tx, tx, low ? 0 : tx);
     } else {
-        ports_.lend(setup_.port, rx, 0, 0);
-        ports_.give_back(setup_.port, tx);
+        ports_.take_over(setup_.port, rx, 0, 0);
+        ports_.release(setup_.port, tx);
     }
     if (setup_.family_33f) update_rest(around_.now + 1);
 }
@@ -343,11 +343,11 @@ void Uart::write_mode(void* owner, std::uint16_t address, std::uint16_t value, s
     if (self.setup_.family_33f) {
         self.update_polarity(self.around_.now + (was_enabled ? 1 : 0));
         if (was_enabled && self.enabled() && !self.state_.held) self.sample(self.around_.now);
-        if (was_enabled || self.enabled()) self.lend_pins();
+        if (was_enabled || self.enabled()) self.take_over_pins();
         self.show_rts(self.around_.now + 1);
     }
     if (self.enabled() == was_enabled) return;
-    if (!self.setup_.family_33f) self.lend_pins();
+    if (!self.setup_.family_33f) self.take_over_pins();
     if (self.enabled()) {
         self.state_.phase = self.around_.now + 1;
         self.receiver_.start(self.around_.now + 1);
@@ -369,7 +369,7 @@ void Uart::write_sta(void* owner, std::uint16_t address, std::uint16_t value, st
     }
     const std::uint16_t changed = old ^ self.sta();
     if (!self.enabled() || !(changed & (kUxSTA["UTXEN"] | kUxSTA["UTXBRK"] | kUxSTA["UTXINV"]))) return;
-    self.lend_pins();
+    self.take_over_pins();
     // 33FJ: the empty transmitter asks for words as soon as it may send.
     if (self.setup_.family_33f && (changed & kUxSTA["UTXEN"]) && (self.sta() & kUxSTA["UTXEN"]))
         self.around_.interrupts.raise(self.setup_.tx_irq, self.around_.now);

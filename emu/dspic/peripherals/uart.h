@@ -161,7 +161,7 @@ class Uart {
     void clear();
     bool consumed(const cosim::UartFrame& frame, Cycle at);
     void measure(const cosim::UartFrame& frame);
-    void lend_pins();
+    void take_over_pins();
     // uart_line.cpp
     bool infrared() const;
     bool idles_low() const;

@@ -118,19 +118,19 @@ void Uart::show_rts(Cycle when) {
     const std::uint16_t rts = bit(setup_.rts_pin), cts = bit(setup_.cts_pin);
     switch (flow_pins()) {
     case kNone:
-        if (ports_.lent(setup_.flow_port) & (rts | cts)) ports_.give_back(setup_.flow_port, rts | cts);
+        if (ports_.taken_over(setup_.flow_port) & (rts | cts)) ports_.release(setup_.flow_port, rts | cts);
         return;
     case kRtsAndCts:
         ports_.attend(setup_.flow_port, setup_.cts_pin);
-        return ports_.lend(setup_.flow_port, rts | cts, rts, rts_low() ? 0 : rts, when);
+        return ports_.take_over(setup_.flow_port, rts | cts, rts, rts_low() ? 0 : rts, when);
     case kRts:
-        ports_.lend(setup_.flow_port, rts, rts, rts_low() ? 0 : rts, when);
+        ports_.take_over(setup_.flow_port, rts, rts, rts_low() ? 0 : rts, when);
         break;
     case kClock:
-        ports_.lend(setup_.flow_port, rts, rts, 0, when);
+        ports_.take_over(setup_.flow_port, rts, rts, 0, when);
         break;
     }
-    if (ports_.lent(setup_.flow_port) & cts) ports_.give_back(setup_.flow_port, cts);
+    if (ports_.taken_over(setup_.flow_port) & cts) ports_.release(setup_.flow_port, cts);
 }
 
 }  // namespace puckloop::dspic

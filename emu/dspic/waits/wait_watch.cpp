@@ -69,7 +69,7 @@ bool needs_look(const Machine& m, const Arrival& arrival) {
     return arrival.level <= m.waits.level && stay.branch == arrival.branch && arrival.now >= stay.next_look;
 }
 
-void note_leap(Machine& m, const Op* branch) {
+void note_skip(Machine& m, const Op* branch) {
     WaitWatch::Stay& stay = m.waits.stays[static_cast<std::size_t>(m.waits.level)];
     if (stay.branch != branch) return;
     stay.last = m.st.cycle;

@@ -96,7 +96,7 @@ void note_arrival(Machine& m, const Op* branch, const Op* head);
 /// The arrival is one at which the loop is looked at.
 bool needs_look(const Machine& m, const Arrival& arrival);
 /// After a leap at `branch`: the loop came round all the time.
-void note_leap(Machine& m, const Op* branch);
+void note_skip(Machine& m, const Op* branch);
 /// At the first leap over iterations of a loop: whether it polls what no model drives.
 void note_polls(Machine& m, const Op* branch, const Op* head);
 /// The stay at the highest level that still lasts and was looked at; null if there is none.

@@ -56,14 +56,14 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
         const I2cTransfer& transfer = queue_.front();
         if (step_ == Step::Start) {
             const I2cMessage& message = transfer.messages[message_];
-            gives_up_ = cosim::later(next_, transfer.timeout);
+            timeout_at_ = cosim::later(next_, transfer.timeout);
             byte_ = 0;
             addressed_ = false;
             length_ = message.read ? message.length : message.data.size();
             begun.push_back(phase(I2cPhaseKind::Start,
                                   static_cast<std::uint8_t>(message.address << 1 | (message.read ? 1 : 0))));
             step_ = Step::Waiting;
-            next_ = gives_up_;
+            next_ = timeout_at_;
         } else if (step_ == Step::Byte) {
             const I2cMessage& message = transfer.messages[message_];
             if (message.read) {
@@ -74,7 +74,7 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
                 begun.push_back(phase(I2cPhaseKind::Write, static_cast<std::uint8_t>(message.data[byte_])));
             }
             step_ = Step::Waiting;
-            next_ = gives_up_;
+            next_ = timeout_at_;
         } else if (step_ == Step::Stop) {
             begun.push_back(phase(I2cPhaseKind::Stop));
             step_ = Step::Finish;
@@ -157,7 +157,7 @@ Time I2cAdapter::next_completion() const {
     case Step::Start:  // it then waits for an answer
         return cosim::later(next_, queue_.front().timeout);
     case Step::Byte:
-        return gives_up_;
+        return timeout_at_;
     case Step::Idle:
     case Step::Finish:
     case Step::Waiting:

@@ -84,7 +84,7 @@ class I2cAdapter {
     Step step_ = Step::Idle;
     cosim::Time next_ = cosim::kNever;
     cosim::Time bus_free_ = 0;
-    cosim::Time gives_up_ = cosim::kNever;  // on the message under way
+    cosim::Time timeout_at_ = cosim::kNever;  // on the message under way
     std::size_t message_ = 0;
     std::size_t byte_ = 0;
     bool addressed_ = false;

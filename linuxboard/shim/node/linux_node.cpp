@@ -42,7 +42,7 @@ LinuxNode::LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery)
     for (std::size_t i = 0; i < spec_.cameras.size(); ++i)
         kernel_.add_camera(std::make_unique<VideoDevice>(
             spec_.cameras[i], i, cosim::from_seconds(spec_.uptime_s), *scenery_, launcher_->video_memory(i)));
-    if (can_foresee()) foresight_.emplace(*this);
+    if (can_foresee()) speculation_.emplace(*this);
     if (spec_.start == 0) {
         start_program();
     } else {
@@ -64,13 +64,13 @@ void LinuxNode::start_program() {
     Client& client = *clients_.back();
     client.process = std::move(process);
     switch (client.process->hear(kStartPatience, client.request, client.data)) {
-    case Heard::Ended:
+    case ProcessEvent::Ended:
         throw InputError(spec_.program, "node " + spec_.name,
                          client.process->describe_end() + " before it began: " + last_words());
-    case Heard::Silent:
+    case ProcessEvent::Silent:
         throw InputError(spec_.program, "", "does not load the preloaded library",
                          "a dynamically linked program");
-    case Heard::Request:
+    case ProcessEvent::Request:
         break;
     }
     if (client.request.op != Op::Hello || client.request.a != wire::kVersion)
@@ -126,7 +126,7 @@ Time LinuxNode::next_scheduled() const {
 
 void LinuxNode::run_scheduled(Time now) {
     must_be_final();
-    if (faults_.next() <= now) suffer(now);
+    if (faults_.next() <= now) apply_faults(now);
     if (next_hangup_ < spec_.hangups.size() && spec_.hangups[next_hangup_] <= now) {
         ++next_hangup_;
         kernel_.hang_up(now);

@@ -51,7 +51,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     bool resume(bool wait) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
-    cosim::Rewindable* rewindable() override { return foresight_ ? &*foresight_ : nullptr; }
+    cosim::Rewindable* rewindable() override { return speculation_ ? &*speculation_ : nullptr; }
     std::optional<cosim::Stop> stop() const override { return stop_; }
     /// The program gets `signal`, or the scenario's, and SIGKILL once the grace period is over. One that
     /// would die of the signal without a word does so now.
@@ -70,10 +70,10 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     std::uint64_t requests() const { return requests_; }
 
   private:
-    /// While the program waits, the node is its devices, which can go back (linux_node_foresight.cpp).
-    class Foresight : public cosim::BoundedRewindable {
+    /// While the program waits, the node is its devices, which can go back (linux_node_speculation.cpp).
+    class Speculation : public cosim::BoundedRewindable {
       public:
-        explicit Foresight(LinuxNode& node) : node_(node) {}
+        explicit Speculation(LinuxNode& node) : node_(node) {}
         void mark() override;
         void rewind() override;
         void settle() override { marked_ = false; }
@@ -121,13 +121,13 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void run_devices(cosim::Time now);
     cosim::Time next_scheduled() const;
     void run_scheduled(cosim::Time now);
-    void suffer(cosim::Time now);
+    void apply_faults(cosim::Time now);
     cosim::Time next_device_event() const;
     cosim::Time next_action() const;
     void collect(std::vector<cosim::Message>& outbox);
     void pace(cosim::Time time);
 
-    // linux_node_foresight.cpp
+    // linux_node_speculation.cpp
     bool can_foresee() const;
     /// What follows cannot be taken back.
     void must_be_final() const;
@@ -192,7 +192,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     std::vector<std::unique_ptr<Client>> clients_;  ///< by age
     std::int32_t last_number_ = 0;
     cosim::Time until_ = 0;
-    std::optional<Foresight> foresight_;
+    std::optional<Speculation> speculation_;
     std::optional<cosim::Time> waking_at_;  ///< instant of the last step: its processes are being woken
     cosim::Time start_at_ = cosim::kNever;
     std::size_t next_restart_ = 0;

@@ -174,16 +174,16 @@ void LinuxNode::hear_child(Client& parent) {
         return;
     }
     switch (child->process->hear(kChildPatience, child->request, child->data)) {
-    case Heard::Request:
+    case ProcessEvent::Request:
         child->request.now = now;
         child->state = Client::State::Asking;
         return;
-    case Heard::Silent:
+    case ProcessEvent::Silent:
         warn(fmt::format("{}: a child process does not load the preloaded library: it was killed",
                          spec_.program));
         child->process->kill();
         break;
-    case Heard::Ended:
+    case ProcessEvent::Ended:
         break;
     }
     client_ended(*child, now);

@@ -21,7 +21,7 @@ wire::Charges times(const wire::Charges& charges, double factor) {
 
 }  // namespace
 
-void LinuxNode::suffer(Time now) {
+void LinuxNode::apply_faults(Time now) {
     const ProcessDamage damage = faults_.happen(now, !clients_.empty() && end_signal_ == 0);
     if (damage.charge_factor) launcher_->page().charges = times(spec_.charges, *damage.charge_factor);
     if (damage.paused_until > paused_until_) {

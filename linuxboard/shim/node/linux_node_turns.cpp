@@ -140,16 +140,16 @@ bool LinuxNode::listen(Client& client, bool wait) {
     launcher_->echo_output();
     catch_up(client);
     switch (*heard) {
-    case Heard::Request:
+    case ProcessEvent::Request:
         ++requests_;
         // A program that has just taken another one's place does not know the time.
         if (client.request.op == Op::Hello) client.request.now = client.answered;
         client.state = Client::State::Asking;
         break;
-    case Heard::Ended:
+    case ProcessEvent::Ended:
         client_ended(client, client.announced_exit ? client.exit_time : entry(client.slot).now.load());
         break;
-    case Heard::Silent: {
+    case ProcessEvent::Silent: {
         const Time now = entry(client.slot).now.load();
         const std::string reason =
             fmt::format("{} has not let time pass for {:g} s of wall clock (half of --stall): {}",

@@ -146,19 +146,19 @@ bool Process::was_killed() const {
            ended.si_pid != 0 && ended.si_code != CLD_EXITED;
 }
 
-Heard Process::hear(double watchdog, wire::Request& request, std::string& data) {
+ProcessEvent Process::hear(double watchdog, wire::Request& request, std::string& data) {
     while (true)
         if (const auto heard = try_hear(watchdog, true, request, data)) return *heard;
 }
 
-std::optional<Heard> Process::try_hear(double watchdog, bool wait, wire::Request& request,
-                                       std::string& data) {
+std::optional<ProcessEvent> Process::try_hear(double watchdog, bool wait, wire::Request& request,
+                                              std::string& data) {
     if (!(wait ? await_request() : channel_.turn.is(Turn::Node))) {
         if (!wait) return std::nullopt;
-        if (!is_gone()) return is_silent(watchdog) ? std::optional(Heard::Silent) : std::nullopt;
+        if (!is_gone()) return is_silent(watchdog) ? std::optional(ProcessEvent::Silent) : std::nullopt;
         if (!channel_.turn.is(Turn::Node)) {
             await_end();
-            return Heard::Ended;
+            return ProcessEvent::Ended;
         }
     }
     silence_ = {};
@@ -168,7 +168,7 @@ std::optional<Heard> Process::try_hear(double watchdog, bool wait, wire::Request
         leaving_ = true;
         channel_.turn.give(Turn::Program);
     }
-    return Heard::Request;
+    return ProcessEvent::Request;
 }
 
 /// After another moment of waiting in vain.

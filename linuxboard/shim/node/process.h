@@ -13,7 +13,7 @@
 namespace puckloop::linuxboard {
 
 /// What came of waiting for the process.
-enum class Heard { Request, Ended, Silent };
+enum class ProcessEvent { Request, Ended, Silent };
 
 class Process {
   public:
@@ -28,9 +28,10 @@ class Process {
     void reply(wire::Reply reply, const std::vector<FinishedCall>& calls, int passed = -1);
     /// Waits for the next request; Silent after `watchdog` seconds of computing, or of waiting in the host.
     /// After Ended the exit state is known.
-    Heard hear(double watchdog, wire::Request& request, std::string& data);
+    ProcessEvent hear(double watchdog, wire::Request& request, std::string& data);
     /// The same, but nothing if none has come yet; with `wait` after some milliseconds at the latest.
-    std::optional<Heard> try_hear(double watchdog, bool wait, wire::Request& request, std::string& data);
+    std::optional<ProcessEvent> try_hear(double watchdog, bool wait, wire::Request& request,
+                                         std::string& data);
 
     /// By a signal, and nobody has listened to it since.
     bool was_killed() const;

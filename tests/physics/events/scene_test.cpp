@@ -295,5 +295,5 @@ TEST_CASE("whatever hands do, in whatever order, the world goes on (seeded)") {
         }
     }
     CHECK(done > 1000);
-    CHECK(stage.model.dynamics().complaints() == 0);
+    CHECK(stage.model.dynamics().ode_warnings() == 0);
 }

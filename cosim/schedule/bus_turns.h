@@ -15,7 +15,7 @@
 
 namespace puckloop::cosim {
 
-class Chats {
+class BusTurns {
   public:
     /// Finds the buses again where a wire has been used for the first time.
     void update(const std::vector<Channel>& channels, std::size_t nodes);
@@ -30,7 +30,7 @@ class Chats {
     /// Nothing of the bus that node `n` does not know of comes in before.
     Time limit(std::size_t n) const { return n < limit_.size() ? limit_[n] : kNever; }
     /// When node `n` sends something by itself at the earliest.
-    Time says(std::size_t n) const { return says_[n]; }
+    Time next_send(std::size_t n) const { return next_send_[n]; }
 
   private:
     struct Group {
@@ -40,7 +40,7 @@ class Chats {
     std::size_t used_ = 0;  ///< wires
     std::vector<Group> groups_;
     std::vector<std::size_t> group_of_;
-    std::vector<Time> limit_, earliest_, says_;
+    std::vector<Time> limit_, earliest_, next_send_;
 };
 
 }  // namespace puckloop::cosim

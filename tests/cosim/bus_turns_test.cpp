@@ -1,6 +1,6 @@
 // How far the nodes of one I2C bus may go in turns.
 
-#include "cosim/schedule/chat.h"
+#include "cosim/schedule/bus_turns.h"
 
 #include "base/random.h"
 
@@ -13,13 +13,13 @@ using namespace puckloop::cosim;
 
 namespace {
 
-Channel wire(std::size_t from, std::size_t to, Time base, Time lookahead, bool chats = true) {
+Channel wire(std::size_t from, std::size_t to, Time base, Time lookahead, bool takes_turns = true) {
     Channel channel;
     channel.from = from;
     channel.to = to;
     channel.base = base;
     channel.lookahead = lookahead;
-    channel.chats = chats;
+    channel.takes_turns = takes_turns;
     return channel;
 }
 
@@ -31,29 +31,29 @@ std::vector<Channel> one_bus(Time master, Time bus, Time device) {
 }  // namespace
 
 TEST_CASE("each of a bus goes as far as the phase under way allows") {
-    Chats chats;
+    BusTurns turns;
     // The master sleeps until 1000: nobody sends anything before.
     auto channels = one_bus(1000, kNever, kNever);
-    chats.update(channels, 4);
-    REQUIRE(chats.count() == 1);
-    CHECK(chats.group_of(3) == kNobody);
-    CHECK(chats.limit(3) == kNever);
-    chats.compute(0, channels, {kNever, kNever, kNever, kNever});
-    CHECK(chats.limit(1) == 1000);
-    CHECK(chats.limit(2) == 1005);
-    CHECK(chats.limit(0) == 1010);
-    CHECK(chats.says(0) == 1000);
+    turns.update(channels, 4);
+    REQUIRE(turns.count() == 1);
+    CHECK(turns.group_of(3) == kNobody);
+    CHECK(turns.limit(3) == kNever);
+    turns.compute(0, channels, {kNever, kNever, kNever, kNever});
+    CHECK(turns.limit(1) == 1000);
+    CHECK(turns.limit(2) == 1005);
+    CHECK(turns.limit(0) == 1010);
+    CHECK(turns.next_send(0) == 1000);
     // The device has a phase of 300 to execute: it may, until the next one at the earliest.
     channels = one_bus(kNever, kNever, kNever);
-    chats.compute(0, channels, {kNever, kNever, 300, kNever});
-    CHECK(chats.limit(1) == 375);
-    CHECK(chats.limit(0) == 385);
-    CHECK(chats.limit(2) == 380);  // the bus may hand on at once what the device sends
+    turns.compute(0, channels, {kNever, kNever, 300, kNever});
+    CHECK(turns.limit(1) == 375);
+    CHECK(turns.limit(0) == 385);
+    CHECK(turns.limit(2) == 380);  // the bus may hand on at once what the device sends
     // It has, and answers at 380.
     channels = one_bus(kNever, kNever, 380);
-    chats.compute(0, channels, {kNever, 380, kNever, kNever});
-    CHECK(chats.limit(0) == 390);
-    CHECK(chats.limit(2) == 385);
+    turns.compute(0, channels, {kNever, 380, kNever, kNever});
+    CHECK(turns.limit(0) == 390);
+    CHECK(turns.limit(2) == 385);
 }
 
 TEST_CASE("buses are found by the wires that are used, in whatever order") {
@@ -70,21 +70,21 @@ TEST_CASE("buses are found by the wires that are used, in whatever order") {
         channels.push_back(wire(0, 4, kNever, 0, false));
         for (std::size_t i = channels.size(); i > 1; --i)
             std::swap(channels[i - 1], channels[random.below(i)]);
-        Chats chats;
-        chats.update(channels, 9);
+        BusTurns turns;
+        turns.update(channels, 9);
         for (std::size_t n = 0; n < 9; ++n) {
-            CHECK(chats.group_of(n) == chats.group_of(n - n % 3));
-            const auto& nodes = chats.nodes(chats.group_of(n));
+            CHECK(turns.group_of(n) == turns.group_of(n - n % 3));
+            const auto& nodes = turns.nodes(turns.group_of(n));
             CHECK(nodes.size() == 3);
             CHECK(std::count(nodes.begin(), nodes.end(), n) == 1);
         }
-        CHECK(chats.group_of(0) != chats.group_of(3));
-        CHECK(chats.group_of(3) != chats.group_of(6));
+        CHECK(turns.group_of(0) != turns.group_of(3));
+        CHECK(turns.group_of(3) != turns.group_of(6));
         // Once it is used they are one.
         for (Channel& channel : channels)
-            channel.chats = true;
-        chats.update(channels, 9);
-        CHECK(chats.group_of(0) == chats.group_of(5));
-        CHECK(chats.nodes(chats.group_of(0)).size() == 6);
+            channel.takes_turns = true;
+        turns.update(channels, 9);
+        CHECK(turns.group_of(0) == turns.group_of(5));
+        CHECK(turns.nodes(turns.group_of(0)).size() == 6);
     }
 }

@@ -1,4 +1,4 @@
-#include "physics/ir/ir_fate.h"
+#include "physics/ir/burst_outcomes.h"
 
 #include <cmath>
 #include <numbers>
@@ -11,23 +11,23 @@ constexpr double kStrayTurn = 0.6;    // rad, scatter of a reflection's bearing
 constexpr double kStraySpread = 0.3;  // ln counts, scatter of its strength
 }  // namespace
 
-IrFate::IrFate(const IrParameters& p, std::uint64_t seed, std::string_view pair)
+BurstOutcomes::BurstOutcomes(const IrParameters& p, std::uint64_t seed, std::string_view pair)
     : loss_(p.loss),
       stray_(p.stray),
       stray_strength_(p.stray_loss),
-      random_(seed, "ir/fate/" + std::string(pair)) {}
+      random_(seed, "ir/outcome/" + std::string(pair)) {}
 
-BurstFate IrFate::next() {
-    BurstFate fate;
-    if (loss_ > 0.0) fate.lost = random_.uniform() < loss_;
+BurstOutcome BurstOutcomes::next() {
+    BurstOutcome outcome;
+    if (loss_ > 0.0) outcome.lost = random_.uniform() < loss_;
     if (stray_ > 0.0 && random_.uniform() < stray_) {
         constexpr auto kAll = static_cast<long>(kIrSensors);
         const double pitch = 2 * std::numbers::pi / kAll;
         const long turn = std::lround(kStrayTurn * random_.normal() / pitch) % kAll;
-        fate.turn = static_cast<std::size_t>((turn + kAll) % kAll);
-        fate.strength = static_cast<float>(std::exp(kStraySpread * random_.normal() - stray_strength_));
+        outcome.turn = static_cast<std::size_t>((turn + kAll) % kAll);
+        outcome.strength = static_cast<float>(std::exp(kStraySpread * random_.normal() - stray_strength_));
     }
-    return fate;
+    return outcome;
 }
 
 IrSpell::IrSpell(const IrParameters& p, std::uint64_t seed, std::string_view pair)

@@ -18,18 +18,18 @@ bool LinuxNode::can_foresee() const {
 }
 
 void LinuxNode::must_be_final() const {
-    if (foresight_ && foresight_->marked())
+    if (speculation_ && speculation_->marked())
         throw RunError("the program would go on at a time that is not yet sure");
 }
 
-void LinuxNode::Foresight::mark() {
+void LinuxNode::Speculation::mark() {
     node_.kernel_.copy_devices(devices_);
     until_ = node_.until_;
     messages_in_ = node_.messages_in_;
     marked_ = true;
 }
 
-void LinuxNode::Foresight::rewind() {
+void LinuxNode::Speculation::rewind() {
     node_.kernel_.put_back(*devices_);
     node_.until_ = until_;
     node_.messages_in_ = messages_in_;
@@ -37,7 +37,7 @@ void LinuxNode::Foresight::rewind() {
     node_.inbox_next_ = 0;
 }
 
-Time LinuxNode::Foresight::horizon(std::span<const Message> next) const {
+Time LinuxNode::Speculation::horizon(std::span<const Message> next) const {
     if (node_.kernel_.has_finished()) return node_.until_;
     Time first = std::min(node_.next_scheduled(), node_.kernel_.next_wake(next));
     for (const auto& client : node_.clients_) {

@@ -8,13 +8,13 @@
 
 namespace puckloop::physics {
 
-class IrHarm {
+class IrFaultEffects {
   public:
     /// 1 where nothing is wrong.
     struct Factors {
         IrArray<float> emitter{}, carrier{}, level{};
     };
-    virtual ~IrHarm() = default;
+    virtual ~IrFaultEffects() = default;
 
     /// The emitters of `sender` that `receiver` sees lit, where `mask` are.
     virtual std::uint16_t lit(std::size_t sender, std::size_t receiver, std::uint16_t mask) const = 0;

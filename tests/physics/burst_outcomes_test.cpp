@@ -1,6 +1,6 @@
 // What becomes of single bursts: shares, spells and reflections are those that were asked for.
 
-#include "physics/ir/ir_fate.h"
+#include "physics/ir/burst_outcomes.h"
 #include "physics/ir/ir_medium.h"
 #include "tests/physics/ir_worlds.h"
 
@@ -23,10 +23,10 @@ IrParameters with(double IrParameters::*place, double value) {
 }  // namespace
 
 TEST_CASE("without a reason every burst arrives as it is") {
-    IrFate fate(Parameters().ir, 1, "a>b");
+    BurstOutcomes outcomes(Parameters().ir, 1, "a>b");
     IrSpell spell(Parameters().ir, 1, "a,b");
     for (int k = 0; k < 100; ++k) {
-        const BurstFate one = fate.next();
+        const BurstOutcome one = outcomes.next();
         CHECK(!one.lost);
         CHECK(!spell.at(0.02 * k));
         CHECK(one.turn == 0);
@@ -55,11 +55,11 @@ TEST_CASE("spells: a share of all time, remembered for a time") {
 TEST_CASE("reflections: a share of the bursts, weaker by the loss, from about 0.6 rad beside") {
     IrParameters p = with(&IrParameters::stray, 0.1);
     p.stray_loss = 0.7;
-    IrFate fate(p, 2, "a>b");
+    BurstOutcomes outcomes(p, 2, "a>b");
     constexpr int kBursts = 50'000;
     double stray = 0, log_sum = 0, turned = 0;
     for (int k = 0; k < kBursts; ++k) {
-        const BurstFate one = fate.next();
+        const BurstOutcome one = outcomes.next();
         if (one.strength == 1.0F) continue;
         ++stray;
         log_sum += std::log(one.strength);

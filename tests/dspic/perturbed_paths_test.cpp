@@ -38,12 +38,12 @@ struct World {
     }
 };
 
-class Meddler {
+class Perturber {
   public:
-    Meddler(World& fast, World& slow, std::uint64_t seed)
-        : fast_(fast), slow_(slow), random_(seed, "meddler") {}
+    Perturber(World& fast, World& slow, std::uint64_t seed)
+        : fast_(fast), slow_(slow), random_(seed, "perturber") {}
 
-    void meddle() {
+    void perturb() {
         const auto what = random_.below(14);
         done_ += " " + std::to_string(what);
         switch (what) {
@@ -177,7 +177,7 @@ std::string with_literal(std::string source, const std::string& name) {
                               "        mov w0, 0x0E60\n        pop w0\n");
 }
 
-void compare_meddled(const DeviceInfo& device, std::uint64_t seed, Cycle length) {
+void compare_perturbed(const DeviceInfo& device, std::uint64_t seed, Cycle length) {
     RandomStream random(seed, "service paths");
     std::string source = waiting_program(device, random);
     source = with_literal(with_literal(source, "isr"), "other") + R"(
@@ -207,7 +207,7 @@ trap:   push w0
         for (const bool alternate : {false, true})
             rig.vector(static_cast<int>(Trap::StackError), "trap", alternate);
     }
-    Meddler meddler(fast, slow, seed);
+    Perturber perturber(fast, slow, seed);
     RandomStream cuts(seed, "cuts");
     for (Cycle passed = 0; passed < length;) {
         const Cycle more = 1 + cuts.below(cuts.below(4) ? 60'000 : 40);
@@ -217,19 +217,19 @@ trap:   push w0
         slow.rig.core.run(at);
         fast.disturbances.drift();
         slow.disturbances.drift();
-        INFO(source << "\nseed " << seed << ", at " << at << ", meddled:" << meddler.done());
+        INFO(source << "\nseed " << seed << ", at " << at << ", perturbed:" << perturber.done());
         REQUIRE(fast.rig.log == slow.rig.log);
         REQUIRE(fingerprint(fast.rig) == fingerprint(slow.rig));
         const bool same = state_of(fast.rig) == state_of(slow.rig);
         REQUIRE(same);
-        meddler.meddle();
+        perturber.perturb();
     }
 }
 
 }  // namespace
 
-TEST_CASE("waiting loops under remembered routines, meddled with") {
-    RandomStream seeds(Catch::rngSeed(), "meddled paths");
+TEST_CASE("waiting loops under remembered routines, perturbed") {
+    RandomStream seeds(Catch::rngSeed(), "perturbed paths");
     for (int round = 0; round < 60; ++round)
-        compare_meddled(round % 4 == 0 ? dspic33fj256gp710() : dspic30f6014a(), seeds.next(), 1'000'000);
+        compare_perturbed(round % 4 == 0 ? dspic33fj256gp710() : dspic30f6014a(), seeds.next(), 1'000'000);
 }

@@ -3,7 +3,7 @@
 // instructions without executing them, each with its own idea of a value; how an operand is reached through
 // registers, pointers and memory, and where execution goes on, is the same for all.
 //
-// A domain derives from Followed<itself> and befriends it. It brings, beside what every domain has,
+// A domain derives from SymbolicExecution<itself> and befriends it. It brings, beside what every domain has,
 //   m_                     the machine
 //   step_pointer, indexed  [Wn] with its modification before or behind, [Wn + Wb]
 //   cycles()               a reference to the count of cycles
@@ -17,7 +17,7 @@
 namespace puckloop::dspic {
 
 template <class Domain>
-class Followed {
+class SymbolicExecution {
   public:
     // Operands.
     auto source_ea(const Op* op, bool) { return self().step_pointer(op->s, op->s_pre, op->s_post); }
@@ -72,7 +72,7 @@ class Followed {
 ///   plus(), whole(), set_whole(), word()   of its values
 ///   depth()                                a reference to the bytes of stack that the routine needs
 template <class Domain>
-class FollowedRoutine : public Followed<Domain> {
+class SymbolicRoutine : public SymbolicExecution<Domain> {
   public:
     template <class Address>
     static Address next_word(const Address& at) {

@@ -1,4 +1,4 @@
-#include "run/report/run_diary.h"
+#include "run/report/run_log.h"
 
 #include "base/log.h"
 
@@ -6,7 +6,7 @@
 
 namespace puckloop::tools {
 
-RunDiary::RunDiary(const RunSetup& setup, const RunRequest& request) : setup_(setup) {
+RunLog::RunLog(const RunSetup& setup, const RunRequest& request) : setup_(setup) {
     log::info("scenario {}: {} nodes, {} links, {} faults, seed {}, {}", request.scenario.string(),
               setup.nodes.size(), setup.links.size(), setup.scenario.faults.size(), setup.scenario.seed,
               setup.scenario.duration ? fmt::format("{} s", *setup.scenario.duration) : "without end");
@@ -17,14 +17,14 @@ RunDiary::RunDiary(const RunSetup& setup, const RunRequest& request) : setup_(se
                   link.nominal_baud > 0.0 ? fmt::format(", {} baud", link.nominal_baud) : std::string());
 }
 
-double RunDiary::phase_seconds() {
+double RunLog::phase_seconds() {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - phase_).count();
     phase_ = now;
     return seconds;
 }
 
-void RunDiary::started(const cosim::Conductor& conductor) {
+void RunLog::started(const cosim::Conductor& conductor) {
     for (const auto& node : setup_.nodes) {
         const int process = conductor.process_of(node.name);
         log::info("node {}: {}", node.name,
@@ -33,13 +33,13 @@ void RunDiary::started(const cosim::Conductor& conductor) {
     log::info("nodes started in {:.2f} s", phase_seconds());
 }
 
-void RunDiary::progress(const cosim::Progress& now) {
+void RunLog::progress(const cosim::Progress& now) {
     if (now.wall_s - said_wall_s_ < 1.0) return;
     said_wall_s_ = now.wall_s;
     log::debug("{:.3f} s simulated, {:.1f} x real time", cosim::to_seconds(now.time), now.factor);
 }
 
-void RunDiary::ended(const cosim::Outcome& outcome) {
+void RunLog::ended(const cosim::Outcome& outcome) {
     const double seconds = phase_seconds();
     log::info("run ended{}: {}", outcome.success ? "" : " without success", outcome.text);
     log::info("{:.3f} s simulated in {:.2f} s, {} grants ({:.0f} a second)",
@@ -54,7 +54,7 @@ void RunDiary::ended(const cosim::Outcome& outcome) {
         log::warning("{}", warning);
 }
 
-void RunDiary::written() {
+void RunLog::written() {
     log::info("picture and report written in {:.2f} s", phase_seconds());
 }
 

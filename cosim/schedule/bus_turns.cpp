@@ -1,21 +1,21 @@
-#include "cosim/schedule/chat.h"
+#include "cosim/schedule/bus_turns.h"
 
 #include <algorithm>
 
 namespace puckloop::cosim {
 
-void Chats::update(const std::vector<Channel>& channels, std::size_t nodes) {
+void BusTurns::update(const std::vector<Channel>& channels, std::size_t nodes) {
     const auto used = static_cast<std::size_t>(std::count_if(
-        channels.begin(), channels.end(), [](const Channel& channel) { return channel.chats; }));
+        channels.begin(), channels.end(), [](const Channel& channel) { return channel.takes_turns; }));
     if (used == used_ && limit_.size() == nodes) return;
     used_ = used;
     groups_.clear();
     group_of_.assign(nodes, kNobody);
     limit_.assign(nodes, kNever);
     earliest_.assign(nodes, kNever);
-    says_.assign(nodes, kNever);
+    next_send_.assign(nodes, kNever);
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (!channels[c].chats) continue;
+        if (!channels[c].takes_turns) continue;
         const std::size_t from = channels[c].from, to = channels[c].to;
         std::size_t group = group_of_[from] == kNobody ? group_of_[to] : group_of_[from];
         if (group == kNobody) {
@@ -42,15 +42,16 @@ void Chats::update(const std::vector<Channel>& channels, std::size_t nodes) {
     }
 }
 
-void Chats::compute(std::size_t group, const std::vector<Channel>& channels, const std::vector<Time>& heard) {
+void BusTurns::compute(std::size_t group, const std::vector<Channel>& channels,
+                       const std::vector<Time>& heard) {
     const Group& bus = groups_[group];
     for (const std::size_t n : bus.nodes) {
         earliest_[n] = heard[n];
-        limit_[n] = says_[n] = kNever;
+        limit_[n] = next_send_[n] = kNever;
     }
     for (const std::size_t c : bus.channels) {
         const Channel& channel = channels[c];
-        says_[channel.from] = std::min(says_[channel.from], channel.base);
+        next_send_[channel.from] = std::min(next_send_[channel.from], channel.base);
         earliest_[channel.to] = std::min(earliest_[channel.to], channel.base);
     }
     for (bool changed = true; changed;) {

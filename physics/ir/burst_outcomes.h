@@ -14,19 +14,19 @@
 
 namespace puckloop::physics {
 
-struct BurstFate {
+struct BurstOutcome {
     bool lost = false;
     std::size_t turn = 0;  ///< receivers by which the light is turned, 0..11
     float strength = 1.0F;
 };
 
 /// Of the bursts from one board to another.
-class IrFate {
+class BurstOutcomes {
   public:
     /// `pair` names the random stream: "a>b".
-    IrFate(const IrParameters& receiver, std::uint64_t seed, std::string_view pair);
+    BurstOutcomes(const IrParameters& receiver, std::uint64_t seed, std::string_view pair);
 
-    BurstFate next();
+    BurstOutcome next();
 
   private:
     double loss_, stray_, stray_strength_;

@@ -9,10 +9,10 @@
 
 namespace puckloop::tools {
 
-class RunDiary {
+class RunLog {
   public:
     /// The phase that begins is the start of the nodes.
-    RunDiary(const RunSetup& setup, const RunRequest& request);
+    RunLog(const RunSetup& setup, const RunRequest& request);
     void started(const cosim::Conductor& conductor);
     void progress(const cosim::Progress& now);  ///< said once a wall second (debug)
     void ended(const cosim::Outcome& outcome);
