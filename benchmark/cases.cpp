@@ -22,7 +22,7 @@ void hello(Kit& kit) {
     const auto scenario = options.scenario.empty() ? kit.shipped("hello.toml") : options.scenario;
     const std::string name = scenario.filename().string();
     kit.time_runs(name + ", one process", {scenario, options.simulated_s, true, options.threads});
-    kit.time_runs(name + ", a process a node", {scenario, options.simulated_s, false});
+    kit.time_runs(name + ", one process per node", {scenario, options.simulated_s, false});
 }
 
 void swarm(Kit& kit) {
@@ -77,7 +77,7 @@ const std::vector<Case>& table() {
         {"avr", "the ATmega1284P beside libsimavr on the same ELFs", [](Kit& kit) { kit.time_avr(); }},
         {"board", "one range-and-bearing board alone, and marks of both dsPIC boards",
          [](Kit& kit) { kit.time_boards(); }},
-        {"scenario", "--scenario in one process and with a process a node", hello},
+        {"scenario", "--scenario in one process and with one process per node", hello},
         {"swarm", "swarm.toml in one process", swarm},
         {"overhead", "hello.toml and swarm.toml beside their boards alone", overhead},
         {"wander", "--robots robots that wander, in one process", wander},

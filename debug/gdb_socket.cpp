@@ -31,7 +31,7 @@ std::uint16_t port_of(std::string_view option, std::string_view where) {
         const auto [end, error] = std::from_chars(where.data() + 1, last, port);
         if (error == std::errc{} && end == last) return port;
     }
-    throw InputError("", option, fmt::format("'{}' is no place to listen", where),
+    throw InputError("", option, fmt::format("'{}' is no address to listen on", where),
                      ":PORT (on 127.0.0.1; 0 for a free one) or unix:PATH");
 }
 

@@ -173,7 +173,7 @@ ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const
     while (row) {
         std::optional<TraceRow> following = cursor.next();
         if (row->time < 0 || row->time > options.end) refuse(*row, "is later than the run's end");
-        if (following && following->time < row->time) refuse(*following, "stands behind a later one");
+        if (following && following->time < row->time) refuse(*following, "is after a later one");
         run.take(*row);
         if (run.done() && run.rows() > 0) break;
         row = std::move(following);

@@ -180,7 +180,7 @@ Sweep read_sweep(const std::string& file, std::size_t index, const TomlValue& ta
     sweep.after = reader.quantity("after", Dimension::Time, 0.0);
     const bool begins = sweep.fault.contains("begin");
     if (sweep.positions && (begins || !sweep.times.empty()))
-        reader.fail("byte", "a byte's position says when the fault begins", "no 'begin' and no 'times'");
+        reader.fail("byte", "a byte's position is when the fault begins", "no 'begin' and no 'times'");
     if (!sweep.positions && (reader.has("record") || reader.has("after")))
         reader.fail(reader.has("record") ? "record" : "after",
                     "record and after count nothing without 'byte'", "byte = [...] or \"all\"");

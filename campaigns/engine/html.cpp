@@ -34,7 +34,7 @@ struct Look {
     const char* meaning;
 };
 constexpr Look kLooks[] = {
-    {Outcome::NotFired, "n", "-", "#ffffff", "the fault never did anything: the case says nothing"},
+    {Outcome::NotFired, "n", "-", "#ffffff", "the fault never did anything: the case shows nothing"},
     {Outcome::Crash, "c", "X", "#7b1fa2", "a program or a node ended by itself"},
     {Outcome::ResetLoop, "l", "L", "#ad1457", "a board was reset again and again"},
     {Outcome::Hang, "h", "H", "#c62828", "a sender fell silent for good, or a program computes for ever"},

@@ -93,7 +93,7 @@ std::string CanBusNode::finish() {
     }
     json["warnings"] = warnings();
     if (!wire_.faults().empty()) json["faults"] = fault_results(wire_.faults().carried(), now_);
-    if (log_.is_open()) write(now_, fmt::format("{} frames, {} errors told", frames_, error_frames_));
+    if (log_.is_open()) write(now_, fmt::format("{} frames, {} errors reported", frames_, error_frames_));
     return json.dump();
 }
 

@@ -163,7 +163,7 @@ void ResumedNode::execute_until_now(std::vector<Message>& outbox) {
     const auto& replayed = options_.from->sent;
     if (sent.size() < next_sent_ ||
         !std::equal(sent.begin(), sent.begin() + static_cast<std::ptrdiff_t>(next_sent_), replayed.begin()))
-        throw RunError("executed again, the board sends something else than the saved state says: run with "
+        throw RunError("executed again, the board sends something else than the saved state has: run with "
                        "--no-cache");
     outbox.insert(outbox.end(), sent.begin() + static_cast<std::ptrdiff_t>(next_sent_), sent.end());
 }

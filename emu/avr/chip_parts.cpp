@@ -164,7 +164,7 @@ void Chip::Parts::connect_hooks() {
     };
     watch.missing = [this] {
         keep(report.warnings,
-             {"ASSR.AS2 is set, but there is no crystal at TOSC1: timer 2 stands still", 2u * core.pc()});
+             {"ASSR.AS2 is set, but there is no crystal at TOSC1: timer 2 does not count", 2u * core.pc()});
     };
     adc.source_changed = [this] { watch_triggers(true); };
     adc.source_set = [this](unsigned number) {

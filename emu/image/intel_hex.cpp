@@ -91,7 +91,7 @@ class HexReader {
         if (bytes.size() < kRecordOverhead)
             fail(fmt::format("a record of {} bytes", bytes.size()), "at least 5: the line is cut short");
         if (bytes.size() != kRecordOverhead + bytes[0])
-            fail(fmt::format("{} data bytes where the record says {}", bytes.size() - kRecordOverhead,
+            fail(fmt::format("{} data bytes where the record states {}", bytes.size() - kRecordOverhead,
                              bytes[0]),
                  "both to agree");
         unsigned sum = 0;

@@ -31,7 +31,7 @@ void PicLog::signal_changed(SignalId id, double value, Time now) {
     if (count > kAllChanges && !is_milestone(count)) return;
     std::string text = fmt::format("{} {}", signals()[id].name, value > 0 ? "on" : "off");
     if (count >= kAllChanges)
-        text += fmt::format(" ({} changes so far, from here on only powers of two are told)", count);
+        text += fmt::format(" ({} changes so far, from here on only powers of two are logged)", count);
     chip_.note(now, std::move(text));
 }
 

@@ -46,7 +46,7 @@ void RabLog::frame(const EmittedFrame& emitted) {
         text += fmt::format("{}{:0{}x} on {}", separator, payload, emitted.size / 4, emitters_text(emitters));
         separator = ", ";
     }
-    if (count == kAllFrames) text += " (from here on only powers of two are told)";
+    if (count == kAllFrames) text += " (from here on only powers of two are logged)";
     chip_.note(emitted.seen, std::move(text));
 }
 
@@ -70,7 +70,8 @@ void RabLog::text(char character, Time now) {
     if (!end && character >= ' ' && character <= '~') line_ += character;
     if (line_.empty() || (!end && line_.size() < kLongestLine)) return;
     ++lines_;
-    chip_.note(now, fmt::format("uart2 says: {}{}", line_, lines_ == kAllLines ? " (no more is told)" : ""));
+    chip_.note(now,
+               fmt::format("uart2 prints: {}{}", line_, lines_ == kAllLines ? " (no more is logged)" : ""));
     line_.clear();
 }
 

@@ -19,7 +19,7 @@ const char kUsage[] =
     "      follow         after the robot with the next lower id heard; the lowest leads\n"
     "      seek           looks for a booth that shines green or blue, and serves there; uses /dev/video1\n"
     "                     unless --camera names another\n"
-    "      serve          into the booth (TAM) that stands ahead, 8 s inside, out, and again\n"
+    "      serve          into the booth (TAM) ahead, 8 s inside, out, and again\n"
     "      still          nothing; with --rab somebody to be heard\n"
     "      spin           on the spot, with a short stop every 10.3 s: to measure sensors\n"
     "  --duration S       seconds, a step each 0.1 s; 0: until Ctrl-C (0)\n"

@@ -27,7 +27,7 @@ const char kUsage[] =
     "usage: puckloop-record --script FILE --log FILE [--period S] [--tty DEVICE] [--i2c DEVICE]\n"
     "                       [--ground-every N] [--relative]\n"
     "  --script FILE   lines: seconds, left, right (steps/s)\n"
-    "  --log FILE      CSV, a row an exchange with the PIC\n"
+    "  --log FILE      CSV, one row per exchange with the PIC\n"
     "  --period S      between two exchanges, at least 0.01 (0.1)\n"
     "  --tty DEVICE    serial line to the PIC, 115200 8N1 (/dev/ttyS0)\n"
     "  --i2c DEVICE    bus of the ground sensors; without the option they are not read\n"

@@ -221,7 +221,7 @@ class Checker {
             if (!inside(world_.arena.corners, b.shape.x, b.shape.y))
                 fail(b.what, b.place, fmt::format("({} m, {} m) is outside the arena", b.shape.x, b.shape.y));
             for (const auto& wall : arena_walls(world_.arena))
-                if (overlap(b.shape, wall, kTouch)) fail(b.what, b.place, "stands in the arena's wall");
+                if (overlap(b.shape, wall, kTouch)) fail(b.what, b.place, "is in the arena's wall");
             for (std::size_t j = 0; j < i; ++j)
                 if (overlap(b.shape, booths_[j].shape, kTouch))
                     fail(b.what, b.place, "overlaps " + booths_[j].what, "a free place");
@@ -260,7 +260,7 @@ class Checker {
         for (std::size_t i = 0; i < moving_.size(); ++i) {
             const auto& body = moving_[i];
             for (const auto& wall : arena_walls(world_.arena))
-                if (overlap(body.shape, wall)) fail(body.what, body.place, "stands in the arena's wall");
+                if (overlap(body.shape, wall)) fail(body.what, body.place, "is in the arena's wall");
             for (const auto& other : fixed_)
                 no_overlap(body, other);
             for (std::size_t j = 0; j < i; ++j)

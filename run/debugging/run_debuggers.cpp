@@ -122,7 +122,7 @@ std::string RunDebuggers::no_way_back(const BoardDebugger& who) const {
     if (!no_way_back_.empty()) return no_way_back_;
     for (const auto& board : boards_)
         if (board.get() != &who && board->stands())
-            return fmt::format("{} stands still at a debugger of its own: let it go on first", board->name());
+            return fmt::format("{} is stopped at a debugger of its own: let it go on first", board->name());
     return {};
 }
 

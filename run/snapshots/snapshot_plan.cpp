@@ -76,7 +76,7 @@ RunRequest going_on(const RunRequest& request) {
     const std::string file = request.from.string();
     if (const std::string option = decided_by_snapshot(request); !option.empty())
         throw InputError("", "--from",
-                         fmt::format("goes on with the run of {}, whatever {} says", file, option),
+                         fmt::format("goes on with the run of {}, whatever {} gives", file, option),
                          "--from without it");
     if (!request.save_state.empty() || !request.from_state.empty())
         throw InputError("", "--from", "does not go with saved states of boards", "one of them");

@@ -158,7 +158,7 @@ TEST_CASE("the same seed gives the same events, another one does not") {
     CHECK(first.events != run("2").events);
 }
 
-TEST_CASE("sequence: tasks are done in order, a mistake begins the round anew") {
+TEST_CASE("sequence: tasks are done in order, a mistake begins the round again") {
     RandomStream seeds(20262, "sequence");
     std::uint64_t complete = 0, mistakes = 0, aborted = 0;
     for (int round = 0; round < 8; ++round) {

@@ -319,7 +319,7 @@ TEST_CASE("two debuggers: each is answered while the other one's board stands", 
     // The other one is stopped beside it: then the run has no way back.
     robot0.send_raw("\x03");
     CHECK_THAT(*robot0.receive(), StartsWith("T02"));
-    CHECK(counter.ask("bc") == "E.robot0.pic stands still at a debugger of its own: let it go on first");
+    CHECK(counter.ask("bc") == "E.robot0.pic is stopped at a debugger of its own: let it go on first");
     const std::string cycles = robot0.monitor("cycles");
     robot0.send("c");
     // Whichever packet is looked at first.

@@ -225,7 +225,7 @@ TEST_CASE("a CAN bus that cannot be is refused in one line") {
     refused("[[can_bus]]\ncontrollers = [\"robot0.pic.can1\"]\nbaud = 125000\n", {"unknown key 'baud'"});
     const std::string bus = "[[can_bus]]\ncontrollers = [\"robot0.pic.can1\"]\n";
     refused(bus + "[[fault]]\nlink = \"can\"\nkind = \"nack\"\n",
-            {"can cannot suffer 'nack'", "drop, flip, stuck, disconnect"});
+            {"unknown fault kind 'nack' for can", "drop, flip, stuck, disconnect"});
     refused(bus + "[[fault]]\nlink = \"can\"\nkind = \"flip\"\nto = \"robot1.pic.can1\"\n",
             {"'robot1.pic.can1' is at no end of can"});
     refused(bus + "[[fault]]\nlink = \"can\"\nkind = \"stuck\"\nprobability = 0.5\n",

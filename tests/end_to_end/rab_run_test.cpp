@@ -43,7 +43,7 @@ TEST_CASE("two robots with boards leave the same bytes in one process and in man
         CHECK(losses["boards"][robot]["unexplained_messages"] == 0);
     }
     const Ended text = bench.puckloop({"trace", "rab", bench.out("one")});
-    CHECK_THAT(text.out, Contains("follower -> leader") && Contains("seed simulator"));
+    CHECK_THAT(text.out, Contains("follower -> leader") && Contains("published model"));
     CHECK_THAT(text_of(bench.out("one") / "trajectory.svg"), Contains("leader") && Contains("follower"));
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("ARGoS's real-robot program and the board's original firmware lose fra
     const auto losses = losses_of(bench, "o", {"--from", "43"});
     const auto& all = losses["groups"][0];
     CHECK(all["frames"] > 300);
-    // The sheet measured 5 to 50 % for two such boards at 100 kHz; the seed's simulator has 70 %.
+    // The sheet measured 5 to 50 % for two such boards at 100 kHz; the published model has 70 %.
     CHECK(all["share"] > 0.02);
     CHECK(all["share"] < 0.75);
     const auto& lost = all["lost_by_cause"];

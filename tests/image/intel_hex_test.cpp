@@ -35,7 +35,7 @@ TEST_CASE("Damaged HEX names file, line, problem and what was expected") {
     CHECK(hex_error("\n:0100\n") ==
           "x.hex: line 2: a record of 2 bytes (expected at least 5: the line is cut short)");
     CHECK(hex_error(":0200000011ED\n") ==
-          "x.hex: line 1: 1 data bytes where the record says 2 (expected both to agree)");
+          "x.hex: line 1: 1 data bytes where the record states 2 (expected both to agree)");
     CHECK(hex_error(":0100000011EE\n") ==
           "x.hex: line 1: the file ends without an end-of-file record (expected :00000001FF as last line)");
     CHECK(hex_error(kEnd + ":0100000011EE\n") ==

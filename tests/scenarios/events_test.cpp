@@ -142,7 +142,7 @@ TEST_CASE("commands do what tables do") {
           "command: 'moev' is unknown (expected perhaps 'move')");
     CHECK(command_problem("move can to 1, 2") ==
           "command: to: '1' has no unit (expected a length such as \"25 cm\")");
-    CHECK(command_problem("move") == "command: 'move' says nothing (expected move OBJECT [to X, Y | by X, Y] "
+    CHECK(command_problem("move") == "command: 'move' has no value (expected move OBJECT [to X, Y | by X, Y] "
                                      "[heading ANGLE] [over TIME])");
     CHECK(command_problem("select robot0 position many").starts_with("command: position is out of range"));
     CHECK(command_problem("add house name x").starts_with("command: add: 'house name x' is not known"));

@@ -87,12 +87,12 @@ TEST_CASE("what a fault cannot be is refused by name") {
         CHECK_THAT(problem(words), Catch::Contains(part));
     };
     said("drop", "'link' is missing");
-    said("drop link=robot1.uart", "there is no link 'robot1.uart' that can suffer a fault (expected "
+    said("drop link=robot1.uart", "there is no link 'robot1.uart' that can have a fault (expected "
                                   "robot0.uart, robot0.i2c, robot0.ir, tam0.xbee, tam0.radio)");
     said("drop node=robot0.pic2", "there is no node");
     said("drop link=robot0.uart node=x", "both a link and a node");
-    said("dorp link=robot0.uart", "cannot suffer 'dorp' (expected one of drop");
-    said("stuck link=tam0.radio", "cannot suffer 'stuck'");
+    said("dorp link=robot0.uart", "unknown fault kind 'dorp' for robot0.uart (expected one of drop");
+    said("stuck link=tam0.radio", "unknown fault kind 'stuck'");
     said("delay link=tam0.radio delay=1ms jitter=2ms", "jitter is larger than the delay");
     said("drop node=ether from=tam7", "'tam7' is at no end of ether");
     said("loss node=ether to=coordinator", "'coordinator' is at no end of ether (expected tam0");
@@ -106,7 +106,7 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("delay node=ircom", "'delay' is missing");
     said("delay node=ircom delay=1ms", "delay is out of range (expected 0.04 to 10 s)");
     said("flip node=ircom bit=9 bits=2", "no word has so many bits");
-    said("stuck node=ircom", "cannot suffer 'stuck'");
+    said("stuck node=ircom", "unknown fault kind 'stuck'");
     said("drop link=robot0.uart factor=2", "unknown key 'factor'");
     said("drop link=robot0.uart probabilty=2", "perhaps 'probability'");
     said("drop link=robot0.uart at=1s begin=2s", "both at and begin");

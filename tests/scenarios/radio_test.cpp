@@ -110,7 +110,7 @@ TEST_CASE("faults sit on modules' lines and on the air") {
     CHECK(fault("link = \"tam0.radio\"\nkind = \"flip\"\nfrom = \"ether\"\n") == "accepted");
     CHECK(fault("link = \"coordinator.uart\"\nfrom = \"coordinator.xbee\"\n") == "accepted");
     CHECK_THAT(fault("link = \"tam0.radio\"\nkind = \"cut\"\n"),
-               Catch::Contains("tam0.radio cannot suffer 'cut' (expected one of drop, flip,"));
+               Catch::Contains("unknown fault kind 'cut' for tam0.radio (expected one of drop, flip,"));
     CHECK_THAT(fault("link = \"tam0.radio\"\nbytes = [\"1\"]\n"), Catch::Contains("unknown key 'bytes'"));
     CHECK_THAT(fault("link = \"tam0.radio\"\nfrom = \"tam0.avr\"\n"),
                Catch::Contains("'tam0.avr' is at no end of tam0.radio (expected tam0.xbee or ether)"));

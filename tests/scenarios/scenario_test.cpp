@@ -130,11 +130,12 @@ TEST_CASE("what cannot be run is refused with its line") {
           "line 9: robot0.pic: unknown key 'selecter' (expected perhaps 'selector')");
     const std::string with_linux = kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\n";
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nkind = \"dorp\"\n")
-              .find("robot0.uart cannot suffer 'dorp' (expected one of drop, flip,") != std::string::npos);
+              .find("unknown fault kind 'dorp' for robot0.uart (expected one of drop, flip,") !=
+          std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbegin = \"5 s\"\nend = \"1 s\"\n")
               .find("window is empty") != std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot1.uart\"\n")
-              .ends_with("fault 1: there is no link 'robot1.uart' that can suffer a fault (expected "
+              .ends_with("fault 1: there is no link 'robot1.uart' that can have a fault (expected "
                          "robot0.uart, robot0.i2c)"));
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = [\"0x00\", \"300\"]\n")
               .find("'300' is not a byte") != std::string::npos);

@@ -130,7 +130,7 @@ void describe(Command& app, Arguments& a) {
         ->type_name("FILE");
     app.add_option("--coverage", i.coverage, "FILE for the lines that ran, as genhtml (lcov) reads them")
         ->type_name("FILE");
-    app.add_option("--sources", i.sources, "folder in which --coverage says the source files are");
+    app.add_option("--sources", i.sources, "folder in which --coverage gives the source files");
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
     app.add_option("--baud", a.baud,
@@ -242,7 +242,7 @@ void declare_exec(Command& app, int& status) {
     command->callback([command, arguments, &status] {
         Arguments& a = *arguments;
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
-            throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
+            throw InputError("", "exec", "no board is on the bench", "--mcu CHIP or --board BOARD");
         start_log("exec", a.log);
         if (a.interpret) chip::set_translation(false);
         exec::BenchOptions& bench = a.options.bench;

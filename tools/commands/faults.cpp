@@ -65,7 +65,7 @@ void declare_campaign(Command& faults, const std::shared_ptr<Options>& options) 
     command->add_flag(
         "!--no-snapshots", campaign.snapshots,
         "execute every case whole, none from a snapshot of the nominal run; the results are the same");
-    command->add_flag("--fresh", campaign.fresh, "drop the results that are in the folder and begin anew");
+    command->add_flag("--fresh", campaign.fresh, "drop the results that are in the folder and begin again");
     command->callback([options] {
         need(options->campaign.file, "faults campaign", "a campaign file");
         faults::run_campaign(options->campaign);

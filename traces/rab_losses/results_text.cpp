@@ -11,16 +11,19 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Column heads of the table, in the order of Cause.
-constexpr std::array<std::string_view, kCauses> kHeads{"dark",   "queue",   "collide", "peaks", "i2c rx",
-                                                       "i2c tx", "sending", "error",   "other"};
+/// "receiver_i2c 12, collision 3": what frames were lost by, those that occurred.
+std::string causes_of(const RabGroup& group) {
+    std::string text;
+    for (std::size_t c = 0; c < kCauses; ++c)
+        if (group.lost[c] > 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name_of(static_cast<Cause>(c)),
+                                group.lost[c]);
+    return text.empty() ? "-" : text;
+}
 
 std::string row_of(const RabGroup& group) {
-    std::string text = fmt::format("{:22} {:>7} {:>9} {:>6.3f} {:>7.1f} ", group.name, group.frames,
-                                   group.delivered, group.share(), group.distance * 100.0);
-    for (const std::size_t lost : group.lost)
-        text += fmt::format(" {:>7}", lost);
-    return text + '\n';
+    return fmt::format("{:22} {:>7} {:>9} {:>6.3f} {:>7.1f}  {}\n", group.name, group.frames, group.delivered,
+                       group.share(), group.distance * 100.0, causes_of(group));
 }
 
 std::size_t frames_on_air(const RabResults& results, const std::string& sender) {
@@ -43,16 +46,12 @@ std::uint64_t unexplained_of(const Losses& losses, const std::string& robot) {
 }  // namespace
 
 std::string to_text(const RabResults& results, double bin) {
-    std::string text =
-        fmt::format("{:22} {:>7} {:>9} {:>6} {:>7}  lost, by cause\n{:22} {:>7} {:>9} {:>6} {:>7} ", "",
-                    "frames", "delivered", "share", "mean cm", "", "", "", "", "");
-    for (const std::string_view head : kHeads)
-        text += fmt::format(" {:>7}", head);
-    text += '\n';
+    std::string text = fmt::format("{:22} {:>7} {:>9} {:>6} {:>7}  {}\n", "", "frames", "delivered", "share",
+                                   "mean cm", "lost, by cause");
     const auto groups = groups_of(results.losses, bin);
     for (const RabGroup& group : groups)
         text += row_of(group);
-    text += fmt::format("{:22} {:>7} {:>9} {:>6.3f}\n\n", "seed simulator", "", "", kSeedDelivered);
+    text += fmt::format("{:22} {:>7} {:>9} {:>6.3f}\n\n", "published model", "", "", kPublishedDelivered);
     text += fmt::format("{:22} {:>7} {:>9}\n", "condition (all frames)", "met by", "lost");
     for (std::size_t c = 0; c + 1 < kCauses; ++c)
         text += fmt::format("{:22} {:>7} {:>9}\n", name_of(static_cast<Cause>(c)), groups[0].met[c],
@@ -95,7 +94,7 @@ std::string to_json(const RabResults& results, double bin) {
                          {"unexplained_messages", unexplained_of(results.losses, robot)}};
     return ordered_json{{"from_s", results.from_s},
                         {"to_s", results.to_s},
-                        {"seed_delivered", kSeedDelivered},
+                        {"seed_delivered", kPublishedDelivered},
                         {"groups", groups},
                         {"boards", boards}}
                .dump(2) +

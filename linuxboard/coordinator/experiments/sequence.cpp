@@ -14,7 +14,7 @@ constexpr Parameter kParameters[] = {
     {"durations", "5,5", "s of work, one per TAM"},
     {"busy-color", "190000", "of the LEDs while a robot works"},
     {"dead-time", "10", "s between two rounds, all dark"},
-    {"time-limit", "0", "s for the next task to be begun, or the round begins anew; 0: none"},
+    {"time-limit", "0", "s for the next task to be begun, or the round begins again; 0: none"},
     {"on-mistake", "restart", "a robot enters out of turn: restart the round, or ignore it"},
     {"rounds", "0", "the experiment ends behind so many; 0: never"},
 };
@@ -93,7 +93,7 @@ class SequenceController : public Controller {
             break;
         case Activity::Working:
             if (attempt_ != sequence_.attempt()) {
-                tam_.note("task", "cancelled", "the round begins anew");
+                tam_.note("task", "cancelled", "the round begins again");
                 tam_.write_robot(Sequence::kWrong);
                 enter("cancelled", Activity::Done, kOff);
             } else if (now - since_ >= settings().duration) {

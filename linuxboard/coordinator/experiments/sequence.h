@@ -2,7 +2,7 @@
 // Tasks that have to be done in order, one at each TAM of a list. Only the TAM whose turn it is shows its
 // colour; a robot that enters it works for its time and is answered 0x7F by infra-red (0x10 while it works),
 // and the next TAM opens. A robot that enters a TAM out of turn has made a mistake: it is answered 0x70, and
-// the round begins anew if `on-mistake` asks for it. Behind the last task the round is complete.
+// the round begins again if `on-mistake` asks for it. Behind the last task the round is complete.
 
 #include "linuxboard/coordinator/controller.h"
 #include "linuxboard/coordinator/parameters.h"

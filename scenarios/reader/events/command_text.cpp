@@ -193,7 +193,7 @@ TomlValue parse_command_text(std::string_view text) {
     ValueForm form = ValueForm::Text;
     std::string value;
     const auto close = [&] {
-        if (value.empty()) fail(fmt::format("'{}' says nothing", key), std::string(action_form(verb)->usage));
+        if (value.empty()) fail(fmt::format("'{}' has no value", key), std::string(action_form(verb)->usage));
         for (const auto& [name, other] : table)
             if (name == key) fail(fmt::format("'{}' is there twice", key));
         table.emplace_back(key, value_of(value, form));

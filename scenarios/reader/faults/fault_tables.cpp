@@ -98,7 +98,7 @@ void read_parameter(Reader& reader, const ParameterInfo& parameter, FaultSpec& f
     fault.set(parameter.key, value);
 }
 
-/// Links or nodes that can suffer a fault.
+/// Links or nodes that can have a fault.
 std::string names_of(const Scenario& scenario, bool nodes) {
     std::string names;
     for (const FaultPlace& place : fault_places(scenario))
@@ -120,7 +120,7 @@ FaultPlace find_place(Reader& reader, const Scenario& scenario) {
     const std::string name = reader.text(key);
     for (const FaultPlace& place : fault_places(scenario))
         if (place.is_node == by_node && place.name == name) return place;
-    reader.fail(key, fmt::format("there is no {} '{}' that can suffer a fault", key, name),
+    reader.fail(key, fmt::format("there is no {} '{}' that can have a fault", key, name),
                 names_of(scenario, by_node));
 }
 
@@ -153,7 +153,7 @@ void check_receiver(Reader& reader, const FaultPlace& place, const FaultSpec& fa
 const KindInfo& find_kind(Reader& reader, const FaultPlace& place) {
     const std::string name = reader.text("kind", "drop");
     if (const KindInfo* kind = cosim::find_kind(name, place.kind)) return *kind;
-    reader.fail("kind", fmt::format("{} cannot suffer '{}'", place.name, name),
+    reader.fail("kind", fmt::format("unknown fault kind '{}' for {}", name, place.name),
                 "one of " + cosim::kinds_of(place.kind));
 }
 
