@@ -31,7 +31,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
 /// A few lines for a person.
 std::string text_report(Bench& bench, const ExecOutcome& outcome);
 
-/// `--list-signals`: one line a signal, or one JSON array on one line.
+/// `--list-signals`: one line per signal, or one JSON array on one line.
 std::string signals_text(std::span<const cosim::SignalInfo> signals);
 std::string signals_json(std::span<const cosim::SignalInfo> signals);
 

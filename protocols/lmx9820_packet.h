@@ -44,7 +44,7 @@ struct LmxReading {
     bool ok() const { return fault == LmxFault::None; }
 };
 
-/// Reads packets octet by octet. Octets between packets are passed over; behind a packet that is wrong the
+/// Reads packets octet by octet. Octets between packets are ignored; behind a packet that is wrong the
 /// next 02 begins a new one, the octet that showed it included.
 class LmxReader {
   public:

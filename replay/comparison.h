@@ -3,7 +3,7 @@
 //
 // Rows that a fault of the recorded run harmed are compared as far as they show what was sent: a lost frame
 // wholly but for its fate, a changed or delayed one not in its content, and what the fault itself put on the
-// line is passed over. On a link with faults a message may be recorded late, behind others: until then it is
+// line is ignored. On a link with faults a message may be recorded late, behind others: until then it is
 // outstanding.
 
 #include "cosim/trace/trace_row.h"

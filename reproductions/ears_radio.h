@@ -37,7 +37,7 @@ EarsRadio read_walk(const std::vector<RobotLine>& lines, double walk_s, double e
 /// With `options.walker` (firmware/ears) on both robots; `options.walk_s` is the walk's time.
 EarsRadio ears_with_radio(const SoundOptions& options);
 
-/// "t_s,walked_s,x_m,y_m,volume,outcome,exchange_s", a line an attempt.
+/// "t_s,walked_s,x_m,y_m,volume,outcome,exchange_s", one line per attempt.
 std::string ears_radio_csv(const EarsRadio& ears);
 /// The field with the path, the places where it heard, those whose message failed, and their ellipse.
 std::string ears_radio_picture(const EarsRadio& ears, const std::string& caption);

@@ -24,8 +24,8 @@ std::vector<ReportedExchange> exchange_on_boards(const BoardExchanges& options);
 
 ExchangeTimes times_of(const std::vector<ReportedExchange>& exchanges);
 
-/// "exchange,ended_s,outcome,name_s,link_s,release_s,total_s", a line an attempt; a part that was not reached
-/// is empty.
+/// "exchange,ended_s,outcome,name_s,link_s,release_s,total_s", one line per attempt; a part that was not
+/// reached is empty.
 std::string exchanges_csv(const std::vector<ReportedExchange>& exchanges);
 
 }  // namespace puckloop::tools

@@ -20,7 +20,7 @@ struct ReportedExchange {
     bool succeeded() const { return failure.empty() && answered; }
 };
 
-/// Those that have ended, in order; other lines are passed over.
+/// Those that have ended, in order; other lines are ignored.
 std::vector<ReportedExchange> read_exchanges(const std::vector<RobotLine>& lines);
 
 }  // namespace puckloop::tools

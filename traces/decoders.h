@@ -180,7 +180,7 @@ class RabDecoder {
     std::map<std::pair<std::string, std::string>, Board> boards_;
 };
 
-/// IRcom: words of light that main boards and TAMs send, where the scenario records them.
+/// IRcom words that main boards and TAMs send, where the scenario records them.
 class IrcomDecoder {
   public:
     explicit IrcomDecoder(TakeFrame take) : take_(std::move(take)) {}

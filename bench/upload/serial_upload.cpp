@@ -104,7 +104,7 @@ class Session {
     std::size_t hellos_ = 0;  ///< of the last hello()
 };
 
-/// What comes within `patience`; anything but answers is passed over.
+/// What comes within `patience`; anything but answers is ignored.
 Session::Answer Session::answer(Clock::duration patience) {
     bool chip = false;
     for (const auto until = Clock::now() + patience; const auto octet = port_.read(until);) {

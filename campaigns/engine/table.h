@@ -7,7 +7,7 @@
 
 namespace puckloop::faults {
 
-/// results.csv: one row a case, the same bytes however the campaign was run.
+/// results.csv: one row per case, the same bytes however the campaign was run.
 void write_table(const Results& results);
 std::string table_text(const Results& results);
 

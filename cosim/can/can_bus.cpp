@@ -67,7 +67,7 @@ void CanBusNode::receive(PortIndex port, const CanMessage& message) {
             CanMessage answer;
             answer.kind = CanKind::Withdrawn;
             answer.tag = message.tag;
-            tell(port, answer, now_ + kLookahead);
+            post(port, answer, now_ + kLookahead);
         }
         return;
     default:
@@ -95,15 +95,15 @@ void CanBusNode::join(PortIndex port, const CanMessage& message) {
 
 // ---- to controllers
 
-void CanBusNode::tell(std::size_t index, CanMessage message, Time time) {
+void CanBusNode::post(std::size_t index, CanMessage message, Time time) {
     Controller& controller = controllers_[index];
     const CanStation& station = wire_.station(index);
     message.bit_time = static_cast<std::uint32_t>(controller.timing.bit);
     message.transmit_errors = static_cast<std::uint16_t>(station.transmit_errors());
     message.receive_errors = static_cast<std::uint8_t>(station.receive_errors());
     if (message.start == 0) message.start = time;
-    controller.told = std::max(controller.told, time);
-    outgoing_.push_back({controller.told, static_cast<PortIndex>(index), message});
+    controller.last_posted = std::max(controller.last_posted, time);
+    outgoing_.push_back({controller.last_posted, static_cast<PortIndex>(index), message});
 }
 
 void CanBusNode::take_news(std::size_t index, const CanNews& news, Time time) {
@@ -116,7 +116,7 @@ void CanBusNode::take_news(std::size_t index, const CanNews& news, Time time) {
     if (news.lost) message.flags |= kCanLost;
     if (news.gone) message.flags |= kCanGone;
     counters.lost += news.lost ? 1 : 0;
-    bool told = true;
+    bool posted = true;
     switch (news.what) {
     case CanNews::What::Sent:
         message.kind = CanKind::Sent;
@@ -132,7 +132,7 @@ void CanBusNode::take_news(std::size_t index, const CanNews& news, Time time) {
             ++counters.received;
             break;
         }
-        told = news.gone;
+        posted = news.gone;
         message.kind = CanKind::Withdrawn;
         break;
     case CanNews::What::Error:
@@ -158,7 +158,7 @@ void CanBusNode::take_news(std::size_t index, const CanNews& news, Time time) {
         break;
     }
     watch_state(index, time);
-    if (told && !wire_.leaving(index)) tell(index, message, time + lag(controller.timing));
+    if (posted && !wire_.leaving(index)) post(index, message, time + lag(controller.timing));
 }
 
 /// A fault keeps the frame from the receiver's program. The sender is whoever has it under way.
@@ -184,7 +184,7 @@ void CanBusNode::take_edge(Time now, Time quiet) {
         CanMessage message;
         message.kind = CanKind::Wake;
         message.start = now;
-        tell(index, message, now + kLookahead);
+        post(index, message, now + kLookahead);
     }
 }
 

@@ -58,12 +58,12 @@ class CanBusNode final : public Node {
         CanTiming timing;      ///< as it joined last
         bool joined = false;   ///< ever
         bool watches = false;  ///< wants Wake
-        Time told = 0;         ///< no message earlier than this any more
+        Time last_posted = 0;  ///< no message earlier than this any more
         enum class State : std::uint8_t { Off, Active, Passive, BusOff } state = State::Off;
     };
     void receive(PortIndex port, const CanMessage& message);
     void join(PortIndex port, const CanMessage& message);
-    void tell(std::size_t index, CanMessage message, Time time);
+    void post(std::size_t index, CanMessage message, Time time);
     void take_news(std::size_t index, const CanNews& news, Time time);
     bool dropped(std::size_t index, const CanNews& news);
     void take_edge(Time now, Time quiet);

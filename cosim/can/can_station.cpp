@@ -51,7 +51,7 @@ bool CanStation::withdraw() {
     state_.pending = false;
     const bool in_frame = state_.phase == Phase::Frame && (state_.sends || state_.lost);
     const bool in_error =
-        busy() && state_.phase != Phase::Frame && state_.tell && (state_.was_sender || state_.lost);
+        busy() && state_.phase != Phase::Frame && state_.reports && (state_.was_sender || state_.lost);
     if (in_frame || in_error) {
         state_.once = true;
         return false;
@@ -103,7 +103,7 @@ void CanStation::begin_frame(Time now, bool may_join) {
     state.index = 0;
     state.may_join = may_join;
     state.sends = state.lost = state.won = state.acknowledges = false;
-    state.tell = state.overload = state.was_sender = state.suspends = false;
+    state.reports = state.overload = state.was_sender = state.suspends = false;
     state.low = false;
     state.next_sample = now + state.timing.sample;
     state.next_bit = now + state.timing.bit;
@@ -288,7 +288,7 @@ void CanStation::fail(CanError error, bool counts) {
         state.error_at = static_cast<std::uint8_t>(state.reader.taken() - 1);
         state.error = error;
     }
-    state.tell = true;
+    state.reports = true;
     state.overload = false;
     const bool was_passive = passive();
     state.active_flag = !was_passive && !state.listens;
@@ -330,7 +330,7 @@ CanNews CanStation::news(CanNews::What what) const {
 
 CanNews CanStation::frame_ended() {
     State& state = state_;
-    const CanNews told = news(state.sends ? CanNews::What::Sent : CanNews::What::Received);
+    const CanNews reported = news(state.sends ? CanNews::What::Sent : CanNews::What::Received);
     if (state.sends) {
         if (!state.replaced) state.pending = false;
         if (state.tec > 0) --state.tec;
@@ -339,7 +339,7 @@ CanNews CanStation::frame_ended() {
         state.rec = static_cast<std::uint16_t>(std::min<unsigned>(state.rec - 1u, kMostActive));
     }
     state.once = false;
-    return told;
+    return reported;
 }
 
 std::optional<CanNews> CanStation::conclude() {
@@ -347,19 +347,20 @@ std::optional<CanNews> CanStation::conclude() {
     const bool ends = state.next == Phase::Intermission || state.overload;
     if (state.phase == Phase::BusOff && state.next == Phase::Idle) {
         state.tec = state.rec = 0;
-        state.tell = false;
+        state.reports = false;
         return news(CanNews::What::Recovered);
     }
     if (state.next == state.phase) {
-        if (state.phase != Phase::BusOff || !state.tell || state.bits < kErrorBits) return std::nullopt;
+        if (state.phase != Phase::BusOff || !state.reports || state.bits < kErrorBits) return std::nullopt;
     } else if (state.phase == Phase::Frame && state.reader.ended() && ends) {
         return frame_ended();
-    } else if (state.phase != Phase::Delimiter || !state.tell || !ends) {
+    } else if (state.phase != Phase::Delimiter || !state.reports || !ends) {
         return std::nullopt;
     }
-    const CanNews told = news(state.phase == Phase::BusOff ? CanNews::What::BusOff : CanNews::What::Error);
-    state.tell = state.once = false;
-    return told;
+    const CanNews reported =
+        news(state.phase == Phase::BusOff ? CanNews::What::BusOff : CanNews::What::Error);
+    state.reports = state.once = false;
+    return reported;
 }
 
 void CanStation::enter_next(Time now) {
@@ -403,7 +404,7 @@ Time CanStation::earliest_news(Time now, bool stirs) const {
         return over ? by_others : in(kDelimiter - state.count - unsampled);
     case Phase::BusOff:
         if (over) return by_others;
-        return in(state.tell
+        return in(state.reports
                       ? std::max(0, kErrorBits - state.bits - unsampled)
                       : std::max(0, (kRecoveries - state.count) * kIntegration - state.run - unsampled));
     }

@@ -76,7 +76,7 @@ class CanStation {
     Time next_bit() const { return state_.next_bit; }
 
     /// A frame that this station alone now sends: arbitration has just been won, with this sample.
-    /// Told once.
+    /// Reported once.
     bool take_won() { return std::exchange(state_.won, false); }
     const CanOffer& sending() const { return sending_; }
     Time frame_start() const { return state_.frame_start; }
@@ -142,7 +142,7 @@ class CanStation {
         // The error or overload frame.
         bool overload = false, active_flag = false, was_sender = false;
         bool unpunished = false;  ///< nobody acknowledged a passive sender, and nobody has spoken since
-        bool tell = false;        ///< news is due at its end
+        bool reports = false;     ///< news is due at its end
         protocols::CanError error = protocols::CanError::None;
         std::uint8_t error_at = 0;
         bool suspends = false;  ///< it has sent, and is passive

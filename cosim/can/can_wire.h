@@ -16,7 +16,7 @@ namespace puckloop::cosim {
 
 class CanWire {
   public:
-    /// Told before it counts, which is at `time`.
+    /// Reported before it counts, which is at `time`.
     using TakeNews = std::function<void(std::size_t station, const CanNews& news, Time time)>;
     /// The wire becomes dominant after it was recessive for so long.
     using TakeEdge = std::function<void(Time now, Time quiet)>;

@@ -103,7 +103,7 @@ void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now
     settle();
 }
 
-/// Tells the master once everybody has answered.
+/// Answers the master once everybody has answered.
 void I2cBusNode::settle() {
     if (!pending_->open.empty()) return;
     Pending done = *pending_;

@@ -37,9 +37,9 @@ class Server {
                 send();
             }
         } catch (const InputError& error) {
-            return tell({true, error.what()});
+            return report_error({true, error.what()});
         } catch (const std::exception& error) {
-            return tell({false, error.what()});
+            return report_error({false, error.what()});
         }
     }
 
@@ -135,7 +135,7 @@ class Server {
 
     bool abandoned() const { return getppid() != conductor_; }
 
-    int tell(const protocol::Error& error) {
+    int report_error(const protocol::Error& error) {
         protocol::write_error(bytes_, error);
         try {
             send();

@@ -14,7 +14,7 @@ class TraceStats {
   public:
     void add(const TraceRow& row);
 
-    /// A table, one line a link and sender.
+    /// A table, one line per link and sender.
     std::string text() const;
     /// {"first_s", "last_s", "messages", "links": [{"link", "from", counters}]}
     std::string json() const;

@@ -97,15 +97,15 @@ void ChipLog::read_report(Time now, const dspic::Chip& chip) {
 void ChipLog::read_errors(Time now, const dspic::Chip& chip) {
     for (std::size_t i = 0; i < kUarts; ++i) {
         const dspic::UartCounters counters = chip.uart_counters(static_cast<int>(i) + 1);
-        dspic::UartCounters& told = uarts_[i].counters;
-        const auto tell = [&](std::uint64_t& before, std::uint64_t count, const char* what) {
+        dspic::UartCounters& logged = uarts_[i].counters;
+        const auto log_growth = [&](std::uint64_t& before, std::uint64_t count, const char* what) {
             if (count < std::max<std::uint64_t>(1, 2 * before)) return;
             before = std::bit_floor(count);
             note(now, fmt::format("uart{}: {} so far: {}", i + 1, what, count));
         };
-        tell(told.framing_errors, counters.framing_errors, "framing errors");
-        tell(told.parity_errors, counters.parity_errors, "parity errors");
-        tell(told.overruns, counters.overruns, "characters lost by overrun");
+        log_growth(logged.framing_errors, counters.framing_errors, "framing errors");
+        log_growth(logged.parity_errors, counters.parity_errors, "parity errors");
+        log_growth(logged.overruns, counters.overruns, "characters lost by overrun");
     }
 }
 

@@ -5,7 +5,7 @@
 
 namespace puckloop::chip {
 
-/// A core with an instrument interprets every instruction and leaps over none, which changes nothing of what
+/// A core with an instrument interprets every instruction and skips none, which changes nothing of what
 /// the program does and when. Without one a core pays nothing. All calls come from inside a run.
 class Instrument {
   public:

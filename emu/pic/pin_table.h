@@ -1,5 +1,5 @@
 #pragma once
-// The e-puck main board's wiring of the dsPIC30F6014A, one line a pin, in the manner of a schematic.
+// The e-puck main board's wiring of the dsPIC30F6014A, one line per pin, in the manner of a schematic.
 // Source: e-puck fact sheet 3.2 (from the e-puck library's port headers and the camera and codec drivers).
 //
 // Deviations:

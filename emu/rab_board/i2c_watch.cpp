@@ -48,8 +48,8 @@ void I2cWatch::answer(const cosim::I2cPhase& answer, Time now) {
     if (answer.ack == 0) {
         ++counters_.not_acknowledged;
         if (is_milestone(counters_.not_acknowledged))
-            tell_(now, fmt::format("i2c: {} not acknowledged, {} so far", start ? "address" : "byte",
-                                   counters_.not_acknowledged));
+            log_line_(now, fmt::format("i2c: {} not acknowledged, {} so far", start ? "address" : "byte",
+                                       counters_.not_acknowledged));
         return;
     }
     if (open_.kind != I2cPhaseKind::Write) return;
@@ -75,13 +75,13 @@ void I2cWatch::stretched(Time by, Time now) {
     if (!is_milestone(counters_.long_stretches)) return;
     std::string what = "at " + place();
     if (open_.kind == I2cPhaseKind::Write) what = fmt::format("after 0x{:02x} for {}", open_.byte, place());
-    tell_(now, fmt::format("i2c: SCL held for {:.3f} ms {}, {} so far", cosim::to_seconds(by) * 1e3, what,
-                           counters_.long_stretches));
+    log_line_(now, fmt::format("i2c: SCL held for {:.3f} ms {}, {} so far", cosim::to_seconds(by) * 1e3, what,
+                               counters_.long_stretches));
 }
 
 void I2cWatch::count(std::uint64_t& counter, Time now, const std::string& text) {
     if (!is_milestone(++counter)) return;
-    tell_(now, counter == 1 ? text : fmt::format("{}, {} so far", text, counter));
+    log_line_(now, counter == 1 ? text : fmt::format("{}, {} so far", text, counter));
 }
 
 void I2cWatch::written(std::uint8_t value, Time now) {
@@ -101,8 +101,8 @@ void I2cWatch::written(std::uint8_t value, Time now) {
               fmt::format("i2c: payload size {} asked for, which is none of {}", value,
                           protocols::kRabSizesText));
     } else if (is_milestone(++sizes_)) {
-        tell_(now, fmt::format("i2c: payload size {} bits asked for{}", value,
-                               sizes_ > 1 ? fmt::format(", {} so far", sizes_) : ""));
+        log_line_(now, fmt::format("i2c: payload size {} bits asked for{}", value,
+                                   sizes_ > 1 ? fmt::format(", {} so far", sizes_) : ""));
     }
 }
 

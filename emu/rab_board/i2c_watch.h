@@ -36,9 +36,9 @@ struct I2cCounters {
 
 class I2cWatch {
   public:
-    using Tell = std::function<void(cosim::Time, std::string)>;
-    /// `tell` gets a line for the log, with its time.
-    explicit I2cWatch(Tell tell) : tell_(std::move(tell)) {}
+    using LogLine = std::function<void(cosim::Time, std::string)>;
+    /// `log_line` gets a line for the log, with its time.
+    explicit I2cWatch(LogLine log_line) : log_line_(std::move(log_line)) {}
 
     /// The firmware's 7-bit address. Starts for others are not counted unless they are acknowledged.
     static constexpr std::uint8_t kAddress = 0x20;
@@ -65,7 +65,7 @@ class I2cWatch {
     void count(std::uint64_t& counter, cosim::Time now, const std::string& text);
     std::string place() const;
 
-    Tell tell_;
+    LogLine log_line_;
     I2cCounters counters_;
     cosim::I2cPhase open_;                  // the phase that waits for its answer
     std::optional<std::uint8_t> register_;  // written last; it stays from one transfer to the next

@@ -1,5 +1,5 @@
 #pragma once
-// The range-and-bearing board's wiring of the dsPIC33FJ256GP710, one line a pin, in the manner of a
+// The range-and-bearing board's wiring of the dsPIC33FJ256GP710, one line per pin, in the manner of a
 // schematic. Source: range-and-bearing fact sheet 1.4.
 //
 // Deviations:

@@ -126,8 +126,8 @@ void Module::tell_radio(bool on, Time now) {
     set.network_hops = static_cast<std::uint8_t>(settings_[kNH]);
     set.delay_slots = static_cast<std::uint8_t>(settings_[kNN]);
     set.network_retries = static_cast<std::uint8_t>(settings_[kMR]);
-    if (told_ == set) return;
-    told_ = set;
+    if (announced_ == set) return;
+    announced_ = set;
     air_.radio_sent(radio::encode(set), 0, now);
 }
 

@@ -220,7 +220,7 @@ class Module {
     bool asleep_ = false, sleep_request_ = false;
     std::uint64_t sleep_turn_ = 0;  ///< Sleep and Wake tasks of an earlier one are void
 
-    std::optional<radio::RadioSettings> told_;  ///< what the medium knows
+    std::optional<radio::RadioSettings> announced_;  ///< what the medium knows
     protocols::XBeeApiMode reader_mode_ = protocols::XBeeApiMode::Plain;
     protocols::XBeeReader reader_{protocols::XBeeApiMode::Plain};
     std::size_t partial_bytes_ = 0;  ///< on the line since the last frame; the parser holds them

@@ -34,7 +34,7 @@ struct Surroundings {
     std::function<void(const InfraredWord&)> heard{};    ///< of every word that came
 };
 
-/// What the behaviour sees of a sensor record, and what the PIC gets of its wishes.
+/// What the behaviour sees of a sensor record, and what the PIC gets of its requests.
 Sensors to_sensors(const protocols::EpuckSensors& record);
 protocols::EpuckActuators to_record(const Actuators& actuators);
 

@@ -143,7 +143,7 @@ void Coordinator::send_wishes() {
     std::erase_if(flights_, [&](const Flight& flight) { return time - flight.since >= kFlightTimeout; });
     for (std::size_t looked = 0; looked < booths_.size() && flights_.size() < kWindow; ++looked) {
         Tam& tam = *booths_[turn_++ % booths_.size()].tam;
-        const std::optional<XBeeBytes> payload = tam.wish(time);
+        const std::optional<XBeeBytes> payload = tam.next_request(time);
         if (!payload) continue;
         last_id_ = static_cast<std::uint8_t>(last_id_ == 0xFF ? 1 : last_id_ + 1);
         module_.send(XBeeTx{.id = last_id_, .to = tam.address(), .data = *payload});
@@ -173,7 +173,7 @@ void Coordinator::switch_off() {
     for (Booth& booth : booths_)
         booth.tam->shut_down();
     work_until(now() + kLastWords, [this](const Booth& booth) {
-        return !flights_.empty() || booth.tam->wish(now()).has_value();
+        return !flights_.empty() || booth.tam->next_request(now()).has_value();
     });
 }
 

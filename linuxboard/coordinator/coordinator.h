@@ -1,6 +1,6 @@
 #pragma once
 // The coordinator's work: it finds the TAMs of its network, passes on what they report, sends what
-// controllers wish, and steps the experiment every 10 ms.
+// controllers request, and steps the experiment every 10 ms.
 // Protocol and times: TAM fact sheet, sections 7 and 9.
 
 #include "linuxboard/coordinator/controller.h"
@@ -91,7 +91,7 @@ class Coordinator {
     std::vector<std::uint64_t> unnamed_;  ///< reported before they were discovered
     std::vector<std::uint64_t> ignored_;  ///< noted already: no TAM, or a second one of its name
     std::deque<Flight> flights_;
-    std::size_t turn_ = 0;  ///< the booth whose wish is looked at first
+    std::size_t turn_ = 0;  ///< the booth whose request is looked at first
     std::uint8_t last_id_ = 0;
 };
 

@@ -81,7 +81,7 @@ void Tam::pass_time(double now) {
     }
 }
 
-std::optional<protocols::XBeeBytes> Tam::wish(double now) const {
+std::optional<protocols::XBeeBytes> Tam::next_request(double now) const {
     if (shut_down_) return protocols::XBeeBytes{kShutDown};
     if (color_ && (unsure_ || !shows(*color_)) && !set_leds_.outstanding && now >= set_leds_.not_before)
         return protocols::XBeeBytes{kSetLeds, color_->red, color_->green, color_->blue};

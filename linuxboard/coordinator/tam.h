@@ -67,7 +67,7 @@ class Tam {
     /// Time-outs.
     void pass_time(double now);
     /// A payload that is to be sent now, if any; `sent` must follow.
-    std::optional<protocols::XBeeBytes> wish(double now) const;
+    std::optional<protocols::XBeeBytes> next_request(double now) const;
     void sent(const protocols::XBeeBytes& payload, std::uint8_t id, double now);
     /// The last report has the colour that is wished, and nothing else was sent since.
     bool settled() const { return color_ && shows(*color_) && !unsure_; }

@@ -15,7 +15,7 @@ class CameraPort {
     /// `ports`: of the robots with cameras.
     CameraPort(const WorldModel& model, std::vector<cosim::PortIndex> ports);
 
-    /// A LED of a robot: on its main board, or (`turret`) on its I2C bus. Other signals are passed over.
+    /// A LED of a robot: on its main board, or (`turret`) on its I2C bus. Other signals are ignored.
     void led(std::size_t robot, bool turret, std::uint16_t id, double value);
     /// What the cameras' next frame sees is as of the step whose messages are stamped `stamp`: publishes what
     /// changed. `events`: things other than poses can have changed.

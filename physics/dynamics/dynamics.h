@@ -87,7 +87,7 @@ class Dynamics {
     /// Those of the last step.
     std::span<const RobotContact> robot_contacts() const;
 
-    /// How often ODE complained, and what it said first.
+    /// How often ODE warned, and its first warning.
     std::uint64_t ode_warnings() const;
     const std::string& first_ode_warning() const;
 

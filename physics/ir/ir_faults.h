@@ -34,7 +34,7 @@ class IrFaults final : public IrFaultEffects {
     /// The emitters of `sender` are these now, and the medium knows; `begins`: with them a frame begins.
     void emits(cosim::Time now, std::size_t sender, std::uint16_t mask, bool begins);
 
-    /// Has the light of `sender` to be worked out anew? Cleared by it.
+    /// Has the light of `sender` to be computed anew? Cleared by it.
     bool again(std::size_t sender);
     /// Has foreign light on `board` changed? Cleared by it.
     bool shone(std::size_t board);

@@ -1,12 +1,12 @@
 #pragma once
-// What was on the air, by the medium's own reckoning: each frame, and for each board whether it could hear it
+// What was on the air, by the medium's own account: each frame, and for each board whether it could hear it
 // and what else shone on it meanwhile. The ground truth beside which the boards' own results are held.
 //
 // A frame begins with the first emitter on and ends when all have been dark for more than three chips. Frames
 // sent back to back are distinguished by their preambles: light for four chips or more does not occur
 // elsewhere.
 //
-// File (CSV), one row a frame and receiver, in the order in which frames are known to have ended: t_s and
+// File (CSV), one row per frame and receiver, in the order in which frames are known to have ended: t_s and
 // end_s first and last light; sender; receiver; distance_m between the bodies; level_counts and carrier: the
 // strongest of the twelve receivers, carrier in thresholds; receivers: how many were above threshold; heard:
 // 1 if any was; overlap: other boards, joined by '+', whose frames overlapped it and could be heard there;

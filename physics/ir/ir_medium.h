@@ -2,7 +2,7 @@
 // All range-and-bearing boards of a world and the light between them: who emits what, what arrives where.
 // Knows poses and settings, not time; the node (ir_node.h) gives it an order.
 //
-// Coupling is worked out when a burst begins, and again only when something has moved since. Strengths vary
+// Coupling is computed when a burst begins, and again only when something has moved since. Strengths vary
 // from burst to burst by log-normal factors, drawn when the burst begins from one stream a pair of boards.
 //
 // Deviations: 1. within a burst boards stand still (a robot moves at most 0.6 mm during a frame; longer
@@ -61,7 +61,7 @@ class IrMedium {
     void begin_burst(std::size_t board, double seconds);
     /// Emitters, power or carrier changed within the burst. True: what it reaches may have changed.
     bool relight(std::size_t board);
-    /// What it reaches is to be worked out again: what faults do to it has changed.
+    /// What it reaches is to be computed again: what faults do to it has changed.
     void relight_anew(std::size_t board);
     /// Couples the board anew if anything moved since; true if so.
     bool refresh(std::size_t board);
@@ -109,7 +109,7 @@ class IrMedium {
         std::uint16_t lit_mask = 0;  ///< for which its paths' light holds; 0: for none
         double potentiometer = kPotentiometerAtPowerOn;
         double carrier_hz = 0.0;
-        std::uint64_t coupled_at = 0;  ///< `changes_` when its row was worked out
+        std::uint64_t coupled_at = 0;  ///< `changes_` when its row was computed
         bool out = false;              ///< its robot is held in the air
     };
     struct Path {

@@ -15,7 +15,7 @@ class BoothLink {
   public:
     BoothLink(const Booth& booth, cosim::PortIndex port);
 
-    /// An LED of its board; other signals are passed over.
+    /// An LED of its board; other signals are ignored.
     void take(const cosim::Signal& signal, BoothModel& booth) const;
     /// Appends what has changed of the beams, stamped `time`.
     void publish(const BoothModel& booth, cosim::Time time, std::vector<cosim::Message>& outbox);

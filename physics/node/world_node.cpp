@@ -311,11 +311,11 @@ std::string WorldNode::finish() {
                                     {"steps_lost_right", std::llround(robot.drive(Side::Right).lost())},
                                     {"battery_v", robot.channels()[kBatteryVoltageChannel]}});
         if (const auto& floor = robot.floor_motion(); floor.pushes() > 0) {
-            auto& told = report["robots"].back();
-            told["pushes"] = floor.pushes();
-            told["pushed_x_m"] = floor.pushed()[0];
-            told["pushed_y_m"] = floor.pushed()[1];
-            told["pushed_theta_rad"] = floor.pushed()[2];
+            auto& pushed_robot = report["robots"].back();
+            pushed_robot["pushes"] = floor.pushes();
+            pushed_robot["pushed_x_m"] = floor.pushed()[0];
+            pushed_robot["pushed_y_m"] = floor.pushed()[1];
+            pushed_robot["pushed_theta_rad"] = floor.pushed()[2];
         }
     }
     report["ode_messages"] = model.dynamics().ode_warnings();

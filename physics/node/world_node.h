@@ -1,5 +1,5 @@
 #pragma once
-// The physical world as a node: wheel counts in, sensor signals out, one step a millisecond.
+// The physical world as a node: wheel counts in, sensor signals out, one step per millisecond.
 //
 // Ports, in the order of the description's robots: "<robot>.board" and "<robot>.ground", both signals; ids
 // come from each robot's board_signals and ground_signals. Then, if any robot has a range-and-bearing board,

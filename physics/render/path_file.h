@@ -14,7 +14,7 @@ struct PathPoint {
 /// In order of first appearance.
 using Paths = std::vector<std::pair<std::string, std::vector<PathPoint>>>;
 
-/// Rows "t_s,name,x_m,y_m,theta_rad" after one header line; a broken last line is passed over, a broken line
+/// Rows "t_s,name,x_m,y_m,theta_rad" after one header line; a broken last line is ignored, a broken line
 /// elsewhere or a missing file throws RunError.
 Paths read_paths(const std::filesystem::path& file);
 

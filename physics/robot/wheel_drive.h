@@ -23,7 +23,7 @@ class WheelDrive {
     /// Angle in radians behind the gear at `seconds`, which never goes back and is not before the last step.
     double angle(double seconds);
 
-    /// Tells where the wheel really is (radians): a rotor too far ahead of it falls back by whole pole pairs.
+    /// Takes where the wheel really is (radians): a rotor too far ahead of it falls back by whole pole pairs.
     /// Returns by how many radians (signed; mostly 0).
     double pull_out(double wheel_angle);
 

@@ -2,7 +2,7 @@
 // The three-axis accelerometer: acceleration and gravity, as the counts of the analogue one, and in g for an
 // LSM330, which stands at the same place. Source: e-puck facts 5.4.
 //
-// Deviations: 1. it sits in the body's centre of mass. 2. A first-order low pass stands for its bandwidth.
+// Deviations: 1. it sits in the body's centre of mass. 2. A first-order low pass represents its bandwidth.
 // 3. Vibration is white noise behind the low pass, drawn anew each physics step, so that each sample of a
 // firmware has its own.
 

@@ -4,7 +4,7 @@
 // facts 4 (law, directivity, floors: measured on an e-puck2); places and directions are plausible only.
 //
 // Deviations: 1. sound takes no time and knows no phase: a source cannot be located by delays. 2. Nothing
-// shades or reflects it; microphone.exponent stands for a room. 3. Directions count in plan.
+// shades or reflects it; microphone.exponent represents a room. 3. Directions count in plan.
 
 #include "physics/description/description.h"
 #include "physics/description/parameters.h"

@@ -30,7 +30,7 @@ class SoundTrack {
   public:
     /// `value` from `seconds` on; times rise.
     void change(double seconds, double value);
-    /// Somewhere in the last `forget()` span; a line a change late.
+    /// Somewhere in the last `forget()` span; one line per change late.
     double at(double seconds) const;
     /// Nothing but silence from `seconds` on.
     bool silent_from(double seconds) const;

@@ -40,7 +40,7 @@ struct BoothColours {
     std::vector<BoothColour> colours;
 };
 
-/// Reads the file back. A broken last line is passed over, a broken line elsewhere or a missing file throws
+/// Reads the file back. A broken last line is ignored, a broken line elsewhere or a missing file throws
 /// RunError.
 std::vector<BoothColours> read_booth_colours(const std::filesystem::path& file);
 

@@ -37,7 +37,9 @@ std::string pose(const RobotState& s) {
 }  // namespace
 
 WorldLog::WorldLog(const WorldModel& world)
-    : log_(world.description().recording.log), told_(world.robot_count()), interrupted_(world.booth_count()) {
+    : log_(world.description().recording.log),
+      logged_(world.robot_count()),
+      interrupted_(world.booth_count()) {
     for (const Robot& robot : world.description().robots)
         robots_.push_back(robot.name);
     if (log_.is_open()) elements(world.description());
@@ -122,21 +124,21 @@ void WorldLog::contacts(const WorldModel& world) {
 }
 
 void WorldLog::drives(const WorldModel& world) {
-    for (std::size_t i = 0; i < told_.size(); ++i) {
+    for (std::size_t i = 0; i < logged_.size(); ++i) {
         const RobotModel& robot = world.robot(i);
-        Told& told = told_[i];
+        Logged& logged = logged_[i];
         for (const Side side : {Side::Left, Side::Right}) {
             const auto index = static_cast<std::size_t>(side);
             const auto lost = static_cast<std::uint64_t>(std::llround(std::abs(robot.drive(side).lost())));
-            if (lost < std::max<std::uint64_t>(1, 2 * told.lost[index])) continue;
-            told.lost[index] = std::bit_floor(lost);
+            if (lost < std::max<std::uint64_t>(1, 2 * logged.lost[index])) continue;
+            logged.lost[index] = std::bit_floor(lost);
             write(fmt::format("{} {} wheel: {} steps lost so far", robots_[i], kSide[index], lost));
         }
         const bool low = robot.channels()[kBatteryLowChannel] > 0;
-        if (low && !told.battery_low)
+        if (low && !logged.battery_low)
             write(fmt::format("{} battery low: {:.3f} V", robots_[i],
                               robot.channels()[kBatteryVoltageChannel]));
-        told.battery_low |= low;
+        logged.battery_low |= low;
     }
 }
 

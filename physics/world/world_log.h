@@ -31,7 +31,7 @@ class WorldLog {
     struct Episode {
         std::uint64_t begun = 0, last = 0;  // steps
     };
-    struct Told {
+    struct Logged {
         std::array<std::uint64_t, 2> lost{};  // steps of each wheel
         bool battery_low = false;
     };
@@ -46,7 +46,7 @@ class WorldLog {
     double seconds_ = 0.0;
     std::vector<std::string> robots_;
     std::map<RobotContact, Episode> touching_;
-    std::vector<Told> told_;
+    std::vector<Logged> logged_;
     std::vector<std::array<bool, booth::kBarriers>> interrupted_;  // of each booth
     std::uint64_t ode_warnings_ = 0;
 };

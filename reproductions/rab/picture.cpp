@@ -81,7 +81,7 @@ std::string strength_panel(const std::vector<RabSummary>& summary) {
 
 /// The published formula on both; the dash is the truth.
 std::string distance_panel(const std::vector<RabSummary>& summary) {
-    Chart chart = panel(summary, "distance worked out (dashes: the true one)", "cm");
+    Chart chart = panel(summary, "distance computed (dashes: the true one)", "cm");
     for (std::size_t i = 0; i < summary.size(); ++i) {
         const RabSummary& s = summary[i];
         const double middle = static_cast<double>(i), truth = s.distance * kCentimetres;

@@ -28,7 +28,7 @@ struct OutsideSpec {
 
 class OutsideNode : public cosim::Node {
   public:
-    /// Throws InputError for an unreadable script, RunError if no terminal or port can be had. Tells on
+    /// Throws InputError for an unreadable script, RunError if no terminal or port can be had. Prints on
     /// stderr where a terminal or port is.
     explicit OutsideNode(const OutsideSpec& spec);
     ~OutsideNode() override;

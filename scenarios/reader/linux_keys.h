@@ -6,7 +6,7 @@
 
 namespace puckloop::scenarios {
 
-/// Program, host name, times, folder, signals and lateness; what is absent stays as `board` has it. Throws
+/// Program, host name, times, folder, signals and delays; what is absent stays as `board` has it. Throws
 /// InputError with the line.
 void read_program(Reader& reader, LinuxBoard& board);
 

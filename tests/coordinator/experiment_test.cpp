@@ -258,7 +258,7 @@ TEST_CASE("the module's start-up, discovery and periods are those of the sheet")
     const Outcome outcome = perform("random-task", {}, {}, 125, [](SimulatedMesh& mesh) {
         mesh.add("TAM01", kFirst);
         mesh.add("TAM02", kFirst + 1, 30);  // boots later: found by its first report
-        mesh.add("COORD", kFirst + 2);      // another coordinator: passed over
+        mesh.add("COORD", kFirst + 2);      // another coordinator: ignored
         mesh.add("TAM1", kFirst + 3);
     });
     REQUIRE(outcome.commands.size() >= 6);

@@ -15,7 +15,7 @@ class Visits : public Controller {
             tam_.write_robot(0x42);                        // to the robot, by infra-red, while it is inside
         }
         inside_ = tam_.robot();
-        tam_.set_leds(inside_ ? color_ : kOff);  // a wish: repeated until a report has it
+        tam_.set_leds(inside_ ? color_ : kOff);  // a request: repeated until a report has it
     }
     State state() const override {  // the bar in the picture
         return inside_ ? State{"visit", Activity::Working} : State{"empty", Activity::Free};

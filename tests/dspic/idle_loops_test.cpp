@@ -296,7 +296,7 @@ wait:   mov     [w1], w0
             compare(kHead + source + kTracelessTail, 100'000, period, period);
 }
 
-TEST_CASE("loops that only wait are leapt over together with service routines without a trace") {
+TEST_CASE("loops that only wait are skipped together with service routines without a trace") {
     RandomStream random(3, "steady loops");
     const auto pick = [&](std::initializer_list<const char*> choice) -> std::string {
         return choice.begin()[random.below(choice.size())];
@@ -397,7 +397,7 @@ TEST_CASE("waiting under a steady beat really is skipped") {
     CHECK(rig.core.instructions() > 1'000'000'000);
 }
 
-TEST_CASE("after a disturbance a waiting loop has to come round once before it is leapt over") {
+TEST_CASE("after a disturbance a waiting loop has to come round once before it is skipped") {
     // W5 follows W4 an iteration late.
     const std::string source = kHead + R"(
 again:  push    w4

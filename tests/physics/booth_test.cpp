@@ -222,7 +222,7 @@ TEST_CASE("no event moves a booth or a part of it") {
     CHECK_THROWS_WITH(check_events(plan, world), Catch::Contains("there is no 'tam0 back'"));
 }
 
-TEST_CASE("tams.csv is read back, and damage is named or passed over") {
+TEST_CASE("tams.csv is read back, and damage is named or ignored") {
     const auto file = puckloop::tests::scratch_path("puckloop-tams.csv");
     WorldModel model(booth_world(0.36));
     {

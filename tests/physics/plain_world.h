@@ -1,5 +1,5 @@
 #pragma once
-// What the sensors of a world see, worked out plainly: everything against everything, nothing kept from one
+// What the sensors of a world see, computed plainly: everything against everything, nothing kept from one
 // step to the next. The reference for WorldModel, which looks only where something changed.
 
 #include "physics/world/world_model.h"

@@ -1,4 +1,4 @@
-// A world's step works out only what something can have changed. Here it is held to the plain way, bit for
+// A world's step computes only what something can have changed. Here it is held to the plain way, bit for
 // bit: everything against everything at every step, on random worlds with things that move and hands.
 
 #include "tests/physics/plain_world.h"
@@ -101,7 +101,7 @@ TEST_CASE("sensors and contacts are those of a plain look at everything", "[incr
     }
 }
 
-TEST_CASE("nothing is another if everything is worked out anew at every step", "[increments]") {
+TEST_CASE("nothing is another if everything is computed anew at every step", "[increments]") {
     for (std::uint64_t round = 0; round < 16; ++round) {
         RandomStream chance(round, "anew");
         World world = random_world(chance, 8);

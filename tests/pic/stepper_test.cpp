@@ -68,7 +68,7 @@ TEST_CASE("a step is due when its pattern has stood for the settle time, not bef
     CHECK(motor.due() == dspic::kNoCycle);
 }
 
-TEST_CASE("a pattern that stands for less than the settle time is passed over") {
+TEST_CASE("a pattern that stands for less than the settle time is ignored") {
     StepperDecoder motor(StepSense::RightMotor, kSettle);
     motor.coils(kTable[1], 100);
     motor.coils(kTable[0], 129);

@@ -17,7 +17,7 @@ struct Plan {
     Time on = 0;        ///< how long both run on each time
     double busy = 300;  ///< messages a second
     std::size_t signals = kPicSignals;
-    /// Later states are compared byte for byte. Leaps over loops leave other dead words above the stack and
+    /// Later states are compared byte for byte. Skips of loops leave other dead words above the stack and
     /// note other arrivals at the loop than executing every cycle, and the copy has to learn its loops anew.
     bool same_bytes_later = true;
 };

@@ -94,7 +94,7 @@ TEST_CASE("frames rab refuses what cannot be a frame on one line") {
     refused(frames("rab decode", "\\n"),
             "standard input, line 1: chips: nothing to read (expected a frame as 0 and 1)");
     refused(frames("rab decode"),
-            "standard input: holds no line (expected one frame a line, or an argument)");
+            "standard input: holds no line (expected one frame per line, or an argument)");
 }
 
 TEST_CASE("frames epuck encodes actuators and names the fields of records") {

@@ -12,7 +12,7 @@
 
 using namespace puckloop::tests;
 
-TEST_CASE("decode finds the words of light that the medium saw, at their times") {
+TEST_CASE("decode finds the IRcom words that the medium saw, at their times") {
     const std::string out = scratch("ircom");
     const Called run = puckloop::tests::puckloop(fmt::format(
         "run {}/scenarios/ircom.toml --in-process --duration 1.3 --record --out {}", PUCKLOOP_SOURCE, out));

@@ -1,5 +1,5 @@
 #pragma once
-// What the parts of `puckloop frames` share: one file a wire format, and how their input comes in.
+// What the parts of `puckloop frames` share: one file per wire format, and how their input comes in.
 
 #include <cstdint>
 #include <functional>

@@ -32,7 +32,7 @@ void for_each_input(const std::vector<std::string>& arguments,
     for (std::string line; std::getline(std::cin, line);)
         take(trimmed(line), fmt::format("standard input, line {}", ++number));
     if (number == 0)
-        throw InputError("standard input", "", "holds no line", "one frame a line, or an argument");
+        throw InputError("standard input", "", "holds no line", "one frame per line, or an argument");
 }
 
 std::int64_t parse_number(std::string_view text, int base, std::int64_t low, std::int64_t high,

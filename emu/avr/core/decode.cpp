@@ -46,7 +46,7 @@ const Op* first_word(Machine& m, const Op* op) {
     return kHandlers[static_cast<std::size_t>(op->form)](m, op);
 }
 
-/// A backward branch: the instruction, then perhaps a leap.
+/// A backward branch: the instruction, then perhaps a skip.
 template <Handler kInstruction>
 const Op* loop_back(Machine& m, const Op* op) {
     const Op* next = kInstruction(m, op);

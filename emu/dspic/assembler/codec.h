@@ -1,6 +1,6 @@
 #pragma once
 // How a form's operands stand in its word: the operand column of the instruction table, parsed once, with
-// every field's place worked out. Assembler and disassembler are two walks over the same items.
+// every field's place computed. Assembler and disassembler are two walks over the same items.
 
 #include "emu/dspic/core/isa.h"
 #include "emu/dspic/core/memory_map.h"

@@ -50,19 +50,19 @@ class FormEncoder {
         return value_of_ ? evaluate(expression, address_, *value_of_) : 0;
     }
 
-    void complain(std::string problem) {
+    void report(std::string problem) {
         if (problem_.empty() && value_of_) problem_ = std::move(problem);
     }
 
     /// `value` checked against [low, high].
     std::uint32_t in_range(std::int64_t value, std::int64_t low, std::int64_t high, std::string_view what) {
         if (value < low || value > high)
-            complain(fmt::format("{} {} is outside {} to {}", what, value, low, high));
+            report(fmt::format("{} {} is outside {} to {}", what, value, low, high));
         return static_cast<std::uint32_t>(value);
     }
 
     std::uint32_t even(std::int64_t value, std::string_view what) {
-        if (value & 1) complain(fmt::format("{} {:#x} is odd", what, value));
+        if (value & 1) report(fmt::format("{} {:#x} is odd", what, value));
         return static_cast<std::uint32_t>(value >> 1);
     }
 
@@ -190,7 +190,7 @@ class FormEncoder {
         set(letter, operand->number);
         set(mode_letter, kModeRegisterOffset);
         if (offset_register_ >= 0 && offset_register_ != operand->second)
-            complain("both [Wn+Wb] operands share one offset register");
+            report("both [Wn+Wb] operands share one offset register");
         offset_register_ = operand->second;
         set('w', operand->second);
         return true;
@@ -215,7 +215,7 @@ class FormEncoder {
         if (!operand) return false;
         const std::int64_t value = number(operand->expression);
         const std::uint32_t target = in_range(value, 0, kProgramSpace, "the target");
-        if (target & 1) complain(fmt::format("the target {:#x} is odd", target));
+        if (target & 1) report(fmt::format("the target {:#x} is odd", target));
         if (kind == OperandKind::Absolute) {
             set('n', target >> 1);
             second_ = target >> 16;
@@ -225,8 +225,8 @@ class FormEncoder {
         std::int32_t words = static_cast<std::int32_t>((target - from) << 9) >> 10;  // wraps at 23 bits
         if (!value_of_) words = 0;
         if (words < -0x8000 || words > 0x7FFF)
-            complain(fmt::format("the target {:#x} is {} words away: only -32768 to 32767 can be reached",
-                                 target, words));
+            report(fmt::format("the target {:#x} is {} words away: only -32768 to 32767 can be reached",
+                               target, words));
         if (kind == OperandKind::LoopEnd)
             second_ = static_cast<std::uint32_t>(words) & 0xFFFF;
         else
@@ -245,7 +245,7 @@ class FormEncoder {
                 return true;
             }
         }
-        complain(fmt::format("{} multiplies other registers than W4 to W7", operand->text));
+        report(fmt::format("{} multiplies other registers than W4 to W7", operand->text));
         return true;
     }
 
@@ -276,7 +276,7 @@ class FormEncoder {
         std::uint32_t code = (operand->number - first) << 3;
         if (operand->shape == Shape::RegisterOffset) {
             if (operand->number != first + 1 || operand->second != 12)
-                complain(fmt::format("{}: only [W{}+W12] exists", operand->text, first + 1));
+                report(fmt::format("{}: only [W{}+W12] exists", operand->text, first + 1));
             code = kPrefetchOffset;
         }
         for (std::uint32_t step = 0; step < kPrefetchStep.size(); ++step)

@@ -14,7 +14,7 @@ constexpr std::size_t kMostServices = 4096;
 /// An interrupt that comes in during the skip.
 struct PassedService {
     std::uint32_t boundary = 0;
-    std::uint64_t iteration = 0;  ///< counted from the leap's start
+    std::uint64_t iteration = 0;  ///< counted from the skip's start
 };
 
 struct Skip {
@@ -64,7 +64,7 @@ bool live_above_stack(const LoopTrace& trace, std::uint16_t depth) {
     return false;
 }
 
-/// What the leap may pass; false if it may not begin.
+/// What the skip may pass; false if it may not begin.
 bool prepare(Machine& m, IdleLoops::Branch& known, Skip& skip) {
     LoopTrace& trace = known.trace;
     if (!trace.steady || m.limit == 0 || m.mode != PowerMode::Run || m.eligible || m.disi_waits ||
@@ -204,7 +204,7 @@ bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     m.limit = std::min(m.until, m.events.next());
     known.plan.iterations -= skip.iterations;
     known.plan.used = true;
-    ++m.skip->leaps;
+    ++m.skip->skips;
     m.skip->skipped_cycles += skip.arrival - arrival;
     m.skip->passed_services += skip.services;
     return true;

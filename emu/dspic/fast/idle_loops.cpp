@@ -51,7 +51,7 @@ bool as_predicted(Machine& m, const IdleLoops::Plan& plan, Cycle arrival) {
     return true;
 }
 
-/// Leaps over as many iterations as the plan and the limit allow, less one. True if the limit decided: then
+/// Skips as many iterations as the plan and the limit allow, less one. True if the limit decided: then
 /// the real iteration that follows is over before the limit, and the next one is not.
 bool skip_iterations(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     if (m.limit < arrival) return false;
@@ -70,7 +70,7 @@ bool skip_iterations(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
         schedule_watchdog(m);
     }
     plan.used = true;
-    ++m.skip->leaps;
+    ++m.skip->skips;
     m.skip->skipped_cycles += cycles;
     return count + 1 == room;
 }

@@ -11,7 +11,7 @@
 //   - the registers that it polls, and their values.
 // The next real iteration must end in the state that the walk predicted; only then are iterations leapt over,
 // at most up to the next event, and one fewer than could be, so that a real one sets flags and scratch cells.
-// A loop that changes nothing at all from iteration to iteration (it waits for somebody else) is leapt over
+// A loop that changes nothing at all from iteration to iteration (it waits for somebody else) is skipped
 // together with the interrupts that leave no trace (isr_summary.h): see fast_forward.h. Other interrupts come
 // in where they do: loop_advance.h goes from one to the next.
 //
@@ -147,9 +147,9 @@ struct IdleLoops {
     std::deque<Branch> branches;
     std::vector<std::uint16_t> waits;  ///< by branch: arrivals until the next try
     LoopPosition position;
-    std::uint64_t leaps = 0;  ///< for tests and curiosity
+    std::uint64_t skips = 0;  ///< for tests and curiosity
     std::uint64_t skipped_cycles = 0;
-    std::uint64_t passed_services = 0;  ///< routines without a trace that fell into leaps
+    std::uint64_t passed_services = 0;  ///< routines without a trace that fell into skips
 };
 
 /// Makes the table of the branch's plan and trace; these stay as they are as long as it is used.

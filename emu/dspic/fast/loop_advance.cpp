@@ -144,7 +144,7 @@ bool advance_in_loop(Machine& m) {
     if (arrives) note_level(m);
     if (iterations > 0 && which == Arrivals::Noted)
         m.waits.stays[static_cast<std::size_t>(m.waits.level)].last = head - table.branch()->cycles;
-    ++m.skip->leaps;
+    ++m.skip->skips;
     m.skip->skipped_cycles += now - m.st.cycle;
     m.st.cycle = now;
     if (!ends) position.op = table.places[to].op;

@@ -1,7 +1,7 @@
 #pragma once
 // What becomes known of loops and service routines while a mark is set (Core::mark()), and what is forgotten:
-// noted at its first change, taken back at a rewind. A machine that went back so leaps where one would that
-// never ran ahead; leaps differ from executing in nothing but dead words above the stack and arrivals noted.
+// noted at its first change, taken back at a rewind. A machine that went back so skips where one would that
+// never ran ahead; skips differ from executing in nothing but dead words above the stack and arrivals noted.
 
 #include "emu/dspic/fast/idle_loops.h"
 #include "emu/dspic/fast/isr_summary.h"

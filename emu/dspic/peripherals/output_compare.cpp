@@ -45,7 +45,7 @@ void OutputCompare::reset() {
         const OutputCompareState reported = states_[i].reported;
         states_[i] = {};
         states_[i].reported = reported;
-        tell(i, around_.now);
+        notify_board(i, around_.now);
     }
 }
 
@@ -84,8 +84,8 @@ OutputCompareState OutputCompare::present(int unit) const {
     return state;
 }
 
-// Tells the board if what it knows has changed. A level that moves by itself, edge by edge, is at the pin.
-void OutputCompare::tell(std::size_t index, Cycle at) {
+// Notifies the board if what it knows has changed. A level that moves by itself, edge by edge, is at the pin.
+void OutputCompare::notify_board(std::size_t index, Cycle at) {
     OutputCompareState now = present(static_cast<int>(index) + 1);
     if (now.period) now.level = false;
     if (now == states_[index].reported) return;
@@ -172,7 +172,7 @@ void OutputCompare::edge(std::size_t index, Cycle at) {
     if (interrupt && setup_.flag_delay == 0) around_.interrupts.raise(units_[index].irq, at);
     if (interrupt && setup_.flag_delay != 0) state.interrupt = at + setup_.flag_delay;
     plan(index, match);
-    tell(index, at);
+    notify_board(index, at);
 }
 
 void OutputCompare::due(void* owner, Cycle due) {
@@ -195,7 +195,7 @@ void OutputCompare::timer_changed(void* owner, Cycle at) {
     for (std::size_t i = 0; i < self.units_.size(); ++i) {
         if (self.mode(i) == kOff || &self.timer(i) != base.timer) continue;
         self.replan(i, at);
-        self.tell(i, at);
+        self.notify_board(i, at);
     }
 }
 
@@ -228,7 +228,7 @@ void OutputCompare::write_rs(void* owner, std::uint16_t address, std::uint16_t v
         self.timer(index).want_period();
     } else if (self.states_[index].step != Step::Idle) {
         self.replan(index, self.around_.now + 1);
-        self.tell(index, self.around_.now + 1);
+        self.notify_board(index, self.around_.now + 1);
     }
 }
 
@@ -239,7 +239,7 @@ void OutputCompare::write_r(void* owner, std::uint16_t address, std::uint16_t va
     self.around_.sfr.store(address, value, mask);
     if (self.states_[index].step == Step::Idle) return;
     self.replan(index, self.around_.now + 1);
-    self.tell(index, self.around_.now + 1);
+    self.notify_board(index, self.around_.now + 1);
 }
 
 void OutputCompare::write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
@@ -253,7 +253,7 @@ void OutputCompare::write_con(void* owner, std::uint16_t address, std::uint16_t 
     if (self.con(index) == old && !again) return;
     assign(self.con(index), kOCxCON["OCFLT"], false);
     self.begin(index);
-    self.tell(index, self.around_.now + 1);
+    self.notify_board(index, self.around_.now + 1);
 }
 
 }  // namespace puckloop::dspic

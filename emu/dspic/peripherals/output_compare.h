@@ -121,7 +121,7 @@ class OutputCompare {
     void plan(std::size_t index, Cycle from);
     void plan_all();
     void replan(std::size_t index, Cycle at);
-    void tell(std::size_t index, Cycle at);
+    void notify_board(std::size_t index, Cycle at);
     std::uint16_t& rs(std::size_t index) const { return around_.sfr.raw(units_[index].rs); }
     std::uint16_t& r(std::size_t index) const {
         return around_.sfr.raw(static_cast<std::uint16_t>(units_[index].rs + 2));

@@ -39,7 +39,7 @@ void OutputCompare::begin_period(std::size_t index, Cycle at) {
         }
         plan(index, at);
     }
-    if (changed) tell(index, at);
+    if (changed) notify_board(index, at);
 }
 
 // Erratum::PwmZeroDuty
@@ -50,7 +50,7 @@ void OutputCompare::begin_glitch(std::size_t index, Cycle at) {
     drive(index, at);
     state.due = at + 1;
     plan_all();
-    tell(index, at);
+    notify_board(index, at);
 }
 
 bool OutputCompare::faulted(std::size_t index) const {
@@ -66,7 +66,7 @@ void OutputCompare::fault(std::size_t index, Cycle at) {
     drive(index, at);
     plan(index, at);
     around_.interrupts.raise(units_[index].irq, at);
-    tell(index, at);
+    notify_board(index, at);
 }
 
 void OutputCompare::fault_changed(void* owner, bool level, Cycle at) {

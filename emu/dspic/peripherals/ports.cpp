@@ -114,7 +114,7 @@ bool Ports::level(PortLetter port, int pin) const {
     return pin_levels(static_cast<int>(port), around_.now) >> pin & 1;
 }
 
-// Tells the board what the drivers do, if that changed.
+// Notifies the board of what the drivers do, if that changed.
 void Ports::drive(int index, Cycle when) {
     Port& port = ports_[static_cast<std::size_t>(index)];
     const unsigned own =

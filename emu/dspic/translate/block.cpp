@@ -1,5 +1,5 @@
 // A block: operations one after the other from an entry on, with ways out at taken branches, up to the first
-// one that is not translated. What is fixed for it is worked out here once: cycles, stalls, pointers that
+// one that is not translated. What is fixed for it is computed here once: cycles, stalls, pointers that
 // must have been written, and which of them it writes.
 
 #include "emu/dspic/translate/emitter.h"

@@ -90,14 +90,14 @@ struct Arrival {
     int level = 0;            ///< of the CPU
     Cycle now = 0;            ///< start of the branch
 };
-/// Before anything is leapt over; the machine is at the branch wherever needs_look().
+/// Before anything is skipped; the machine is at the branch wherever needs_look().
 void note_arrival(Machine& m, const Arrival& arrival);
 void note_arrival(Machine& m, const Op* branch, const Op* head);
 /// The arrival is one at which the loop is looked at.
 bool needs_look(const Machine& m, const Arrival& arrival);
-/// After a leap at `branch`: the loop came round all the time.
+/// After a skip at `branch`: the loop came round all the time.
 void note_skip(Machine& m, const Op* branch);
-/// At the first leap over iterations of a loop: whether it polls what no model drives.
+/// At the first skip of iterations of a loop: whether it polls what no model drives.
 void note_polls(Machine& m, const Op* branch, const Op* head);
 /// The stay at the highest level that still lasts and was looked at; null if there is none.
 const WaitWatch::Stay* present_stay(const Machine& m, int& level);

@@ -1,5 +1,5 @@
 #pragma once
-// Who is around: one entry a robot heard lately, from the packets of the range-and-bearing board.
+// Who is around: one entry per robot heard lately, from the packets of the range-and-bearing board.
 //
 // A packet's lowest byte is the sender's id (as ARGoS's calibration has it), the bytes above are what its
 // behaviour states. Strength scatters by 10 to 40 % from packet to packet, so it is averaged before it

@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr double kPicosecondsPerMicrosecond = 1e6;
 constexpr int kLargestFifo = 64;
 
-/// Reads one object, key by key, and complains of the keys nobody asked for.
+/// Reads one object, key by key, and refuses the keys nobody asked for.
 class Object {
   public:
     Object(const json& value, std::string place) : value_(value), place_(std::move(place)) {

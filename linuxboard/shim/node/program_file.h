@@ -1,5 +1,5 @@
 #pragma once
-// Can this file run under the preloaded library? Told before the run starts, not by a silent failure.
+// Can this file run under the preloaded library? Reported before the run starts, not by a silent failure.
 
 #include <string>
 

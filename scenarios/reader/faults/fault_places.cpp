@@ -6,7 +6,7 @@ using cosim::PlaceKind;
 
 namespace {
 
-/// What carries radio frames and words of light; a fault may be for those from or to one of its devices.
+/// What carries radio frames and IRcom words; a fault may be for those from or to one of its devices.
 void add_media(const Scenario& scenario, std::vector<FaultPlace>& places) {
     FaultPlace ether{"ether", PlaceKind::Xbee, {}, "ether", true},
         ircom{"ircom", PlaceKind::Ircom, {}, "ircom", true};

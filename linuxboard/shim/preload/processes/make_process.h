@@ -22,7 +22,7 @@ bool ask_for_process(Birth& birth, const std::string& left);
 /// Makes a process that does nothing but `work`, with `context`, whose result is its status (0 to 255).
 /// Returns that, or -1 if the host made none. `with_handlers`: pthread_atfork's handlers run.
 int in_between(int (*work)(void*), void* context, bool with_handlers);
-/// Tells the node whether the new process is there; its number, or -1.
+/// Reports to the node whether the new process is there; its number, or -1.
 pid_t report_birth(const Birth& birth, bool made);
 
 /// The process numbers of ended children, as waitpid() gives them; see wait_calls.cpp.
