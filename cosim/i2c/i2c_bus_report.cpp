@@ -60,15 +60,15 @@ std::string I2cBusNode::finish() {
     std::string devices;
     for (const auto& slave : slaves_)
         devices += fmt::format("{}\"{}\":{}", devices.empty() ? "" : ",", slave->name(), slave->report());
-    std::string warnings;
+    std::string warning_list;
     for (const std::string& line : warnings())
-        warnings += fmt::format("{}\"{}\"", warnings.empty() ? "" : ",", line);
+        warning_list += fmt::format("{}\"{}\"", warning_list.empty() ? "" : ",", line);
     return fmt::format(
         R"({{"transfers":{},"not_acknowledged":{},"lost":{},"bytes_written":{},"bytes_read":{},)"
         R"("stretched":{},"longest_stretch_us":{:.3f},"stuck":{},"devices":{{{}}},"warnings":[{}]{}}})",
         counters_.transfers, counters_.not_acknowledged, counters_.lost, counters_.bytes_written,
         counters_.bytes_read, counters_.stretched, microseconds(counters_.longest_stretch), counters_.stuck,
-        devices, warnings,
+        devices, warning_list,
         faults_.empty() ? "" : ",\"faults\":" + fault_results(faults_.carried(), now_).dump());
 }
 
