@@ -54,4 +54,17 @@ std::vector<std::string> literals(const std::string& line) {
     return found;
 }
 
+std::string comment(const std::string& line) {
+    bool inside = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (inside && line[i] == '\\')
+            ++i;
+        else if (line[i] == '"' && !(i > 0 && !inside && line[i - 1] == '\''))
+            inside = !inside;
+        else if (!inside && line.compare(i, 2, "//") == 0)
+            return line.substr(i + 2);
+    }
+    return {};
+}
+
 }  // namespace puckloop::names

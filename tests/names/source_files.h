@@ -23,4 +23,7 @@ std::vector<SourceFile> source_files();
 /// includes a header, has none.
 std::vector<std::string> literals(const std::string& line);
 
+/// What a line has behind "//", outside literals; empty: no comment.
+std::string comment(const std::string& line);
+
 }  // namespace puckloop::names

@@ -9,7 +9,7 @@
 //   - the step of every cell that an iteration reads before it writes it,
 //   - how many iterations take the same path: no addition wraps, no sign and no zero changes on the way.
 //   - the registers that it polls, and their values.
-// The next real iteration must end in the state that the walk predicted; only then are iterations leapt over,
+// The next real iteration must end in the state that the walk predicted; only then are iterations skipped,
 // at most up to the next event, and one fewer than could be, so that a real one sets flags and scratch cells.
 // A loop that changes nothing at all from iteration to iteration (it waits for somebody else) is skipped
 // together with the interrupts that leave no trace (isr_summary.h): see fast_forward.h. Other interrupts come
