@@ -15,7 +15,7 @@ BurstOutcomes::BurstOutcomes(const IrParameters& p, std::uint64_t seed, std::str
     : loss_(p.loss),
       stray_(p.stray),
       stray_strength_(p.stray_loss),
-      random_(seed, "ir/outcome/" + std::string(pair)) {}
+      random_(seed, "ir/fate/" + std::string(pair)) {}
 
 BurstOutcome BurstOutcomes::next() {
     BurstOutcome outcome;
