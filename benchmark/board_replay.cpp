@@ -5,7 +5,6 @@
 #include "cosim/resume/state_file.h"
 #include "run/factory/node_factory.h"
 #include "run/run_scenario.h"
-#include "run/states/board_identity.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -61,14 +60,12 @@ Recording record_boards(const std::filesystem::path& scenario, double simulated_
     if (!outcome.success || outcome.reason == cosim::EndReason::Interrupted) throw RunError(outcome.text);
     Recording recording{simulated_s, {}};
     for (cosim::BoardState& life : cosim::read_state_file(request.save_state).boards) {
-        const auto node =
-            std::find_if(setup.nodes.begin(), setup.nodes.end(),
-                         [&](const cosim::NodeSpec& spec) { return spec.name == life.board.node; });
-        json description = json::parse(node->json);
-        for (const char* key : {"log", "nvm", "from_state", "save_state"})
-            description.erase(key);
+        const auto node = std::find_if(setup.nodes.begin(), setup.nodes.end(),
+                                       [&](const PlannedNode& spec) { return spec.name == life.board.node; });
+        NodeDescription description = without_files(node->what);
+        description.care = {};
         life.memory = {};
-        recording.boards.push_back({description.dump(), std::move(life)});
+        recording.boards.push_back({std::move(description), std::move(life)});
     }
     return recording;
 }
@@ -77,7 +74,7 @@ ReplayTiming replay_boards(const Recording& recording) {
     using Clock = std::chrono::steady_clock;
     ReplayTiming timing;
     for (const RecordedBoard& recorded : recording.boards) {
-        const auto board = make_board(json::parse(recorded.description));
+        const auto board = make_board(recorded.description);
         std::vector<cosim::Message> sent;
         const double cpu = thread_seconds();
         const auto start = Clock::now();

@@ -7,6 +7,7 @@
 // checked: it must send what it sent in the run.
 
 #include "cosim/resume/board_state.h"
+#include "run/description/node_description.h"
 
 #include <filesystem>
 #include <string>
@@ -15,8 +16,8 @@
 namespace puckloop::tools {
 
 struct RecordedBoard {
-    std::string description;  ///< of the node, without log and files of its own
-    cosim::BoardState life;   ///< what it received and sent
+    NodeDescription description;  ///< of the node, without log and files of its own
+    cosim::BoardState life;       ///< what it received and sent
 };
 
 struct Recording {

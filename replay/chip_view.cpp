@@ -11,7 +11,6 @@
 #include "emu/tam_avr/tam_node.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::tools {
 
@@ -41,14 +40,15 @@ std::map<std::string, Variable> variables_of(const std::map<std::string, Symbol>
 
 }  // namespace
 
-ChipView view_of(const nlohmann::json& spec, cosim::Node& node) {
+ChipView view_of(const NodeDescription& spec, cosim::Node& node) {
     if (auto* resumed = dynamic_cast<cosim::ResumedNode*>(&node)) {
         ChipView view = view_of(spec, resumed->board());
         view.lives_from = resumed->lives_from();
         return view;
     }
     cosim::Node* inner = &node;
-    const std::string file = spec.value("firmware", "");
+    NodeDescription copy = spec;
+    const std::string file = has_board(spec) ? board_fields(copy).firmware : "";
     if (auto* pic = dynamic_cast<pic::PicNode*>(inner)) {
         ChipView view = dspic_view(pic->chip());
         view.variables = variables_of(image::load_image(file).symbols, file);
@@ -64,7 +64,7 @@ ChipView view_of(const nlohmann::json& spec, cosim::Node& node) {
         ChipView view;
         view.name = avr::atmega1284p().name;
         view.clock = &chip.clock();
-        view.origin = cosim::from_seconds(spec.at("start_s"));
+        view.origin = cosim::from_seconds(std::get<tam::TamSpec>(spec.kind).start);
         view.cell_bytes = 1;
         view.chip = std::make_unique<avr::ChipFaults>(chip);
         view.variables =

@@ -4,8 +4,7 @@
 #include "cosim/core/clock.h"
 #include "cosim/core/node.h"
 #include "emu/chip/faults/chip_access.h"
-
-#include <nlohmann/json_fwd.hpp>
+#include "run/description/node_description.h"
 
 #include <cstdint>
 #include <map>
@@ -32,6 +31,6 @@ struct ChipView {
 
 /// `node` was made from `spec`, and both stay. Throws InputError: it has no chip, or its image cannot be read
 /// any more.
-ChipView view_of(const nlohmann::json& spec, cosim::Node& node);
+ChipView view_of(const NodeDescription& spec, cosim::Node& node);
 
 }  // namespace puckloop::tools

@@ -8,13 +8,13 @@
 #include "run/debugging/run_debuggers.h"
 #include "run/factory/node_factory.h"
 #include "run/factory/preflight.h"
+#include "run/plan/state_plan.h"
 #include "run/report/fault_results.h"
 #include "run/report/live_trace.h"
 #include "run/report/report.h"
 #include "run/report/results_folder.h"
 #include "run/report/run_log.h"
 #include "run/snapshots/snapshot_plan.h"
-#include "run/states/state_plan.h"
 
 #include <fmt/format.h>
 
@@ -83,7 +83,7 @@ std::vector<std::string> result_files(const RunSetup& setup) {
                                    "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
                                    "tams.csv",       "faults.csv",       "record.csv",  "trace.sr",
                                    "trace.vcd",      "trace.pcapng"};
-    for (const cosim::NodeSpec& node : setup.nodes)
+    for (const PlannedNode& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);
     for (const scenarios::RobotBoards& robot : setup.scenario.robots) {
@@ -192,7 +192,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     use_snapshots(setup, request, trace, options);
     std::optional<cosim::TraceCsvSink> record;
     std::optional<RunDebuggers> debuggers;
-    cosim::NodeFactory factory = make_node;
+    cosim::NodeFactory factory = make_described;
     if (!request.gdb.empty()) {
         debuggers.emplace(setup, request, options.abort_requested);
         debuggers->keep_past(options, trace, record);
@@ -204,7 +204,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         if (back) options.from = debuggers->begin_again();
         std::optional<cosim::Conductor> conductor;
         try {
-            conductor.emplace(setup.nodes, setup.links, setup.scenario.faults, options, factory);
+            conductor.emplace(node_specs(setup), setup.links, setup.scenario.faults, options, factory);
         } catch (const RunError& error) {  // why it did not begin is in the report, as of one that ended so
             outcome = {};
             outcome.reason = cosim::EndReason::Failed;

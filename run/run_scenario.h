@@ -3,7 +3,7 @@
 
 #include "cosim/conductor.h"
 #include "cosim/interrupt.h"
-#include "run/plan/setup.h"
+#include "run/setup.h"
 
 #include <functional>
 

@@ -4,8 +4,8 @@
 #include "base/text_file.h"
 #include "run/factory/node_factory.h"
 #include "run/plan/overrides.h"
-#include "run/plan/setup.h"
 #include "run/run_scenario.h"
+#include "run/setup.h"
 #include "scenarios/reader/faults/fault_tables.h"
 
 #include <fmt/format.h>
@@ -147,12 +147,8 @@ void check_faults_of_nodes(const Campaign& campaign,
             request.faults.push_back(as_words(fault));
         }
         try {
-            for (const cosim::NodeSpec& node : tools::set_up(request).nodes) {
-                const nlohmann::json spec = nlohmann::json::parse(node.json);
-                if (!spec.contains("faults")) continue;
-                const std::string kind = spec.at("kind");
-                if (kind == "pic" || kind == "rab" || kind == "tam") tools::make_board(spec);
-            }
+            for (const tools::PlannedNode& node : tools::set_up(request).nodes)
+                if (!node.what.faults.empty() && tools::has_board(node.what)) tools::make_board(node.what);
         } catch (const InputError& refused) {
             throw InputError(campaign.file.string(), "", refused.what());
         }

@@ -2,7 +2,7 @@
 
 #include "base/sha256.h"
 #include "cosim/resume/state_file.h"
-#include "run/plan/program_path.h"
+#include "run/files/program_path.h"
 
 #include <fmt/format.h>
 

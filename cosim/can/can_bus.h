@@ -14,6 +14,7 @@
 //  2. A controller that its program switches off or resets within a frame takes part to the end of it.
 //  3. A second reason to delay the next frame within one intermission is not limited to two overload frames.
 
+#include "base/fields/field.h"
 #include "base/node_log.h"
 #include "cosim/can/can_wire.h"
 #include "cosim/core/node.h"
@@ -26,11 +27,23 @@
 namespace puckloop::cosim {
 
 struct CanBusOptions {
+    static constexpr std::string_view kKind = "can_bus";
+
     std::string name = "can";
-    std::vector<std::string> controllers;  ///< port names: "robot0.pic.can1"
-    std::string log{};                     ///< file for the bus's log; empty: none
+    std::vector<std::string> controllers;
+    std::string log{};
     std::vector<CarriedFault> faults{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(
+            field("name", &CanBusOptions::name, "of the node").required(),
+            field("controllers", &CanBusOptions::controllers, "port names: \"robot0.pic.can1\"").required(),
+            field("log", &CanBusOptions::log, "file for the bus's log; empty: none"),
+            unlisted(&CanBusOptions::faults));
+    }
 };
+static_assert(lists_all_fields<CanBusOptions>);
 
 class CanBusNode final : public Node {
   public:
@@ -82,8 +95,5 @@ class CanBusNode final : public Node {
     std::uint64_t frames_ = 0, error_frames_ = 0;
     Time now_ = 0;
 };
-
-/// From a node description: name, controllers, log, faults. Throws InputError.
-std::unique_ptr<Node> make_can_bus(std::string_view json);
 
 }  // namespace puckloop::cosim

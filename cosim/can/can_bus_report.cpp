@@ -97,18 +97,4 @@ std::string CanBusNode::finish() {
     return json.dump();
 }
 
-std::unique_ptr<Node> make_can_bus(std::string_view text) {
-    CanBusOptions options;
-    try {
-        const auto json = nlohmann::ordered_json::parse(text);
-        options.name = json.at("name");
-        options.controllers = json.at("controllers").get<std::vector<std::string>>();
-        options.log = json.value("log", "");
-        if (json.contains("faults")) options.faults = faults_from_json(json["faults"]);
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "CAN bus description", error.what());
-    }
-    return std::make_unique<CanBusNode>(std::move(options));
-}
-
 }  // namespace puckloop::cosim

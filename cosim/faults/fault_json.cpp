@@ -1,6 +1,7 @@
 #include "cosim/faults/fault_json.h"
 
 #include "base/error.h"
+#include "cosim/faults/node_fault.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -37,8 +38,9 @@ ordered_json fault_to_json(const FaultSpec& spec, std::uint64_t seed, std::size_
 
 namespace {
 
-CarriedFault fault_from(const ordered_json& json) {
-    FaultSpec spec;
+NodeFault fault_from(const ordered_json& json) {
+    NodeFault fault;
+    FaultSpec& spec = fault.spec;
     json.at("name").get_to(spec.name);
     json.at("kind").get_to(spec.kind);
     json.at("link").get_to(spec.link);
@@ -64,19 +66,46 @@ CarriedFault fault_from(const ordered_json& json) {
         const auto& burst = json["burst"];
         spec.burst = Burst{burst.at(0), burst.at(1), burst.at(2), burst.at(3)};
     }
-    const RandomStream random =
-        fault_stream(spec, json.at("seed").get<std::uint64_t>(), json.at("index").get<std::size_t>());
-    return {spec, Trigger(spec, random)};
+    json.at("seed").get_to(fault.seed);
+    json.at("index").get_to(fault.index);
+    return fault;
+}
+
+CarriedFault carried(const NodeFault& fault) {
+    return {fault.spec, Trigger(fault.spec, fault_stream(fault.spec, fault.seed, fault.index))};
 }
 
 }  // namespace
+
+JsonValue to_value(const NodeFault& fault) {
+    return parse_json(fault_to_json(fault.spec, fault.seed, fault.index).dump());
+}
+
+std::vector<NodeFault> node_faults(const JsonValue& list) {
+    std::vector<NodeFault> faults;
+    if (list.is_null()) return faults;
+    try {
+        for (const ordered_json& json : ordered_json::parse(dump(list)))
+            faults.push_back(fault_from(json));
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError("", "faults", error.what());
+    }
+    return faults;
+}
+
+std::vector<CarriedFault> carried(const std::vector<NodeFault>& faults) {
+    std::vector<CarriedFault> list;
+    for (const NodeFault& fault : faults)
+        list.push_back(carried(fault));
+    return list;
+}
 
 std::vector<CarriedFault> faults_from_json(const ordered_json& list) {
     std::vector<CarriedFault> faults;
     if (list.is_null()) return faults;
     try {
         for (const ordered_json& json : list)
-            faults.push_back(fault_from(json));
+            faults.push_back(carried(fault_from(json)));
     } catch (const nlohmann::json::exception& error) {
         throw InputError("", "faults", error.what());
     }

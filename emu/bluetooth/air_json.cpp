@@ -1,6 +1,7 @@
-// The node from JSON, and its report.
+// Addresses and times in the node's description, and its report.
 
 #include "base/error.h"
+#include "base/fields/json.h"
 #include "emu/bluetooth/air_node.h"
 
 #include <fmt/format.h>
@@ -32,41 +33,6 @@ json to_json(const Module& module) {
             {"resets", counts.resets}};
 }
 
-cosim::Time time_of(const json& from, const char* key, cosim::Time fallback) {
-    return cosim::from_seconds(from.value(key, cosim::to_seconds(fallback)));
-}
-
-Spread spread_of(const json& from, const char* key, const Spread& fallback) {
-    if (!from.contains(key)) return fallback;
-    return {from[key].at(0).get<double>(), from[key].at(1).get<double>()};
-}
-
-RobotModule module_from(const json& from) {
-    RobotModule robot;
-    ModuleOptions& module = robot.module;
-    module.name = from.at("name");
-    module.boot = time_of(from, "boot_s", module.boot);
-    module.processing = time_of(from, "processing_s", module.processing);
-    Settings& settings = module.settings;
-    settings.name = from.value("friendly_name", settings.name);
-    settings.pin = from.value("pin", settings.pin);
-    settings.automatic = from.value("automatic", settings.automatic);
-    if (from.contains("address"))
-        settings.address = parse_address(module.name, from["address"].get<std::string>());
-    robot.pose = from.value("pose", robot.pose);
-    return robot;
-}
-
-ComputerOptions computer_from(const json& from) {
-    ComputerOptions computer;
-    computer.name = from.at("name");
-    computer.address = parse_address(computer.name, from.at("address").get<std::string>());
-    computer.robot = parse_address(computer.name, from.at("robot").get<std::string>());
-    computer.pin = from.value("pin", computer.pin);
-    computer.connect = time_of(from, "connect_s", computer.connect);
-    return computer;
-}
-
 }  // namespace
 
 Address parse_address(std::string_view place, std::string_view text) {
@@ -85,6 +51,26 @@ Address parse_address(std::string_view place, std::string_view text) {
         address[address.size() - 1 - i] = static_cast<std::uint8_t>(octet);
     }
     return address;
+}
+
+JsonValue AddressForm::write(const Address& address) {
+    return protocols::lmx_address_text(address);
+}
+
+void AddressForm::read(Address& address, const JsonValue& from, const std::string& place) {
+    std::string text;
+    from_value(text, from, place);
+    address = parse_address(place, text);
+}
+
+JsonValue SpreadForm::write(const Spread& spread) {
+    return to_value(std::array{spread.mean, spread.sd});
+}
+
+void SpreadForm::read(Spread& spread, const JsonValue& from, const std::string& place) {
+    std::array<double, 2> both{};
+    from_value(both, from, place);
+    spread = {both[0], both[1]};
 }
 
 std::string AirNode::finish() {
@@ -113,29 +99,6 @@ std::string AirNode::finish() {
                 {"modules", std::move(modules)},
                 {"warnings", warnings}}
         .dump();
-}
-
-std::unique_ptr<cosim::Node> make_air_node(std::string_view text) {
-    AirSpec spec;
-    try {
-        const auto from = json::parse(text);
-        spec.name = from.value("name", spec.name);
-        spec.seed = from.value("seed", spec.seed);
-        spec.range = from.value("range_m", spec.range);
-        spec.csv = from.value("csv", spec.csv);
-        spec.times.discovery = from.value("discovery_s", spec.times.discovery);
-        spec.times.name = spread_of(from, "name_s", spec.times.name);
-        spec.times.link = spread_of(from, "link_s", spec.times.link);
-        spec.times.release = spread_of(from, "release_s", spec.times.release);
-        for (const auto& module : from.at("modules"))
-            spec.modules.push_back(module_from(module));
-        if (from.contains("computers"))
-            for (const auto& computer : from["computers"])
-                spec.computers.push_back(computer_from(computer));
-    } catch (const json::exception& error) {
-        throw InputError("", "Bluetooth description", error.what());
-    }
-    return std::make_unique<AirNode>(spec);
 }
 
 }  // namespace puckloop::bluetooth

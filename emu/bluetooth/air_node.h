@@ -15,21 +15,42 @@
 
 namespace puckloop::bluetooth {
 
-/// A robot's module. Its pose in the world begins at signal `pose` (x, y; m); -1: it has no place.
+/// A robot's module.
 struct RobotModule {
     ModuleOptions module{};
     int pose = -1;
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(part(&RobotModule::module),
+                     field("pose", &RobotModule::pose,
+                           "signal of the world at which its place begins (x, y; m); -1: it has none"));
+    }
 };
+static_assert(lists_all_fields<RobotModule>);
 
 struct AirSpec {
+    static constexpr std::string_view kKind = "bluetooth";
+
     std::string name = "bluetooth";
     std::uint64_t seed = 1;
     Times times{};
-    double range = 10.0;                 ///< m
-    std::vector<RobotModule> modules{};  ///< ports by their names
+    double range = 10.0;
+    std::vector<RobotModule> modules{};
     std::vector<ComputerOptions> computers{};
-    std::string csv{};  ///< log of the air; empty: none
+    std::string csv{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("name", &AirSpec::name, "of the node"),
+                     field("seed", &AirSpec::seed, "of the run"), part(&AirSpec::times),
+                     field("range_m", &AirSpec::range, "within which devices hear each other").in("m"),
+                     field("modules", &AirSpec::modules, "of the robots; ports by their names").required(),
+                     field("computers", &AirSpec::computers, "linked with them"),
+                     field("csv", &AirSpec::csv, "log of the air; empty: none"));
+    }
 };
+static_assert(lists_all_fields<AirSpec>);
 
 class AirNode : public cosim::Node {
   public:
@@ -79,9 +100,5 @@ class AirNode : public cosim::Node {
 
 /// "08:00:17:2C:00:01". Throws InputError naming `place`.
 Address parse_address(std::string_view place, std::string_view text);
-
-/// From JSON: {"name", "seed", "range_m", "times": {...}, "modules": [{"name", "settings", ...}],
-/// "computers": [...], "csv"}, all but names optional. Throws InputError.
-std::unique_ptr<cosim::Node> make_air_node(std::string_view json);
 
 }  // namespace puckloop::bluetooth

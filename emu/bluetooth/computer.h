@@ -7,6 +7,7 @@
 // 2. It tries again 2 s after an attempt failed or a link ended, for ever.
 // 3. What its program writes before the link stands waits.
 
+#include "cosim/core/seconds_form.h"
 #include "emu/bluetooth/network.h"
 #include "emu/bluetooth/serial_out.h"
 
@@ -17,11 +18,26 @@ namespace puckloop::bluetooth {
 struct ComputerOptions {
     std::string name = "computer";
     Address address{};
-    Address robot{};          ///< whom it links with
-    std::string pin{};        ///< the robot's
-    cosim::Time connect = 0;  ///< when it begins
+    Address robot{};
+    std::string pin{};
+    cosim::Time connect = 0;
     SerialSettings serial{};  ///< of the line to its program
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(
+            field("name", &ComputerOptions::name, "of the port").required(),
+            field("address", &ComputerOptions::address, "its own").required().as<AddressForm>(),
+            field("robot", &ComputerOptions::robot, "whom it links with").required().as<AddressForm>(),
+            field("pin", &ComputerOptions::pin, "the robot's"),
+            field("connect_s", &ComputerOptions::connect, "when it begins to link")
+                .in("s")
+                .at_least(0)
+                .as<cosim::Seconds>(),
+            unlisted(&ComputerOptions::serial));
+    }
 };
+static_assert(lists_all_fields<ComputerOptions>);
 
 class Computer : public Station {
   public:

@@ -18,6 +18,7 @@
 //    without limit.
 // 7. The version that READY carries, and the data of the requests 12 to 15 (stored connections), are our own.
 
+#include "cosim/core/seconds_form.h"
 #include "emu/bluetooth/network.h"
 #include "emu/bluetooth/serial_out.h"
 #include "emu/bluetooth/settings.h"
@@ -32,12 +33,27 @@ inline constexpr std::uint8_t kOk = 0, kTimeout = 4;  ///< of a confirm
 inline constexpr std::size_t kMostLinks = 3;          ///< active at once, data sheet 1
 
 struct ModuleOptions {
-    std::string name = "robot0";  ///< whose it is
+    std::string name = "robot0";
     Settings settings{};
-    cosim::Time start = 0;                             ///< power on
-    cosim::Time boot = 500 * cosim::kMillisecond;      ///< until READY, > 0
-    cosim::Time processing = 2 * cosim::kMillisecond;  ///< of a request, > 0
+    cosim::Time start = 0;  ///< power on
+    cosim::Time boot = 500 * cosim::kMillisecond;
+    cosim::Time processing = 2 * cosim::kMillisecond;
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("name", &ModuleOptions::name, "whose it is").required(),
+                     part(&ModuleOptions::settings), unlisted(&ModuleOptions::start),
+                     field("boot_s", &ModuleOptions::boot, "from reset until READY")
+                         .in("s")
+                         .above(0)
+                         .as<cosim::Seconds>(),
+                     field("processing_s", &ModuleOptions::processing, "of a request")
+                         .in("s")
+                         .above(0)
+                         .as<cosim::Seconds>());
+    }
 };
+static_assert(lists_all_fields<ModuleOptions>);
 
 struct ModuleCounts {
     std::uint64_t bytes_in = 0, while_down = 0, framing_errors = 0, between_packets = 0;

@@ -2,6 +2,8 @@
 // What a module keeps in its flash ("NVS").
 // Sources: LMX9820A data sheet, section 10, table 26; defaults as the LMX98xx family is delivered.
 
+#include "base/fields/field.h"
+#include "base/fields/json_value.h"
 #include "emu/bluetooth/network.h"
 
 #include <cstdint>
@@ -30,6 +32,12 @@ struct DefaultConnection {
     bool transparent = false;
 };
 
+/// "08:00:17:2C:00:01" in descriptions.
+struct AddressForm {
+    static JsonValue write(const Address& address);
+    static void read(Address& address, const JsonValue& from, const std::string& place);
+};
+
 struct Settings {
     std::string name = "Serial port device";
     std::string pin = "0000";
@@ -44,6 +52,21 @@ struct Settings {
     std::uint16_t link_timeout = 0x7D00;  ///< slots of 0.625 ms: 20 s
     std::vector<Address> paired{};        ///< the first is the oldest
     std::vector<DefaultConnection> defaults{};
+
+    /// What differs from one delivered module to the next.
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("friendly_name", &Settings::name, "that others see"),
+                     field("pin", &Settings::pin, "fixed PIN"),
+                     field("address", &Settings::address, "six octets").as<AddressForm>(),
+                     unlisted(&Settings::device_class),
+                     field("automatic", &Settings::automatic, "transparent once somebody has linked with it"),
+                     unlisted(&Settings::security), unlisted(&Settings::event_filter),
+                     unlisted(&Settings::serial), unlisted(&Settings::ports_open),
+                     unlisted(&Settings::link_policy), unlisted(&Settings::link_timeout),
+                     unlisted(&Settings::paired), unlisted(&Settings::defaults));
+    }
 };
+static_assert(lists_all_fields<Settings>);
 
 }  // namespace puckloop::bluetooth

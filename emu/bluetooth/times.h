@@ -13,6 +13,8 @@
 // 3. The other times are gamma distributed, which none of them has been shown to be, and independent of one
 //    another, of distance, and of other traffic.
 
+#include "base/fields/field.h"
+#include "base/fields/json_value.h"
 #include "base/random.h"
 #include "cosim/core/time.h"
 
@@ -24,15 +26,33 @@ struct Spread {
     double sd = 0.0;  ///< standard deviation, >= 0
 };
 
+/// [mean, deviation] in descriptions.
+struct SpreadForm {
+    static JsonValue write(const Spread& spread);
+    static void read(Spread& spread, const JsonValue& from, const std::string& place);
+};
+
 struct Times {
-    double discovery = 2.611;  ///< s, mean time until a device answers an inquiry: 6.4 / ln(58 / 5)
+    double discovery = 2.611;  ///< 6.4 / ln(58 / 5)
     Spread name{2.5, 1.2};
     Spread link{9.9, 4.3};
     Spread release{1.0, 0.3};
     cosim::Time page_timeout = 5120 * cosim::kMillisecond;  ///< HCI default: 0x2000 slots of 0.625 ms
     cosim::Time latency = 15 * cosim::kMillisecond;  ///< of data on a link: two polls and two processors
     cosim::Time gather = 5 * cosim::kMillisecond;    ///< transparent bytes wait so long for more
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        const auto spread = [](auto one) { return one.in("s").template as<SpreadForm>(); };
+        return visit(
+            field("discovery_s", &Times::discovery, "mean time until a device answers an inquiry").in("s"),
+            spread(field("name_s", &Times::name, "until a device's name is known: mean and deviation")),
+            spread(field("link_s", &Times::link, "until a link is there: mean and deviation")),
+            spread(field("release_s", &Times::release, "until a link is released: mean and deviation")),
+            unlisted(&Times::page_timeout), unlisted(&Times::latency), unlisted(&Times::gather));
+    }
 };
+static_assert(lists_all_fields<Times>);
 
 /// No drawn time is shorter: what was sent before a release is through by then.
 inline constexpr cosim::Time kShortest = 50 * cosim::kMillisecond;

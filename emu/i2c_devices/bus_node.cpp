@@ -7,7 +7,6 @@
 #include "emu/i2c_devices/rgb_turret.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::i2c_devices {
 
@@ -50,28 +49,6 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
         for (const auto die : {Lsm330::Die::Accelerometer, Lsm330::Die::Gyroscope})
             slaves.push_back(std::make_unique<Lsm330>(die, spec.seed, spec.name));
     return std::make_unique<cosim::I2cBusNode>(std::move(options), std::move(slaves));
-}
-
-std::unique_ptr<cosim::Node> make_bus_node(std::string_view text) {
-    BusSpec spec;
-    try {
-        const auto json = nlohmann::ordered_json::parse(text);
-        spec.name = json.value("name", spec.name);
-        spec.ground_sensor = json.value("ground_sensor", spec.ground_sensor);
-        spec.rgb_turret = json.value("rgb_turret", spec.rgb_turret);
-        spec.lsm330 = json.value("lsm330", spec.lsm330);
-        spec.seed = json.value("seed", spec.seed);
-        spec.hertz = json.value("hertz", spec.hertz);
-        spec.log = json.value("log", spec.log);
-        if (json.contains("faults")) spec.faults = cosim::faults_from_json(json["faults"]);
-        for (const auto& board : json.value("boards", nlohmann::ordered_json::array())) {
-            spec.boards.push_back({board.at("name").get<std::string>(), {}, board.value("prompt", false)});
-            if (board.contains("address")) spec.boards.back().address = board["address"].get<std::uint8_t>();
-        }
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "I2C bus description", error.what());
-    }
-    return make_bus_node(spec);
 }
 
 }  // namespace puckloop::i2c_devices

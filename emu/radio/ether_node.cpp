@@ -153,24 +153,4 @@ std::string EtherNode::finish() {
     return report.dump();
 }
 
-std::unique_ptr<cosim::Node> make_ether_node(std::string_view text) {
-    EtherSpec spec;
-    try {
-        const auto json = nlohmann::json::parse(text);
-        spec.name = json.value("name", spec.name);
-        spec.seed = json.value("seed", spec.seed);
-        spec.propagation.range_m = json.value("range_m", spec.propagation.range_m);
-        spec.propagation.exponent = json.value("exponent", spec.propagation.exponent);
-        spec.propagation.loss = json.value("loss", spec.propagation.loss);
-        spec.processing = cosim::from_seconds(json.value("processing_s", cosim::to_seconds(spec.processing)));
-        for (const auto& station : json.at("stations"))
-            spec.stations.push_back({station.at("name"), station.at("at").get<Position>()});
-        if (json.contains("faults"))
-            spec.faults = cosim::faults_from_json(nlohmann::ordered_json::parse(json["faults"].dump()));
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "radio medium description", error.what());
-    }
-    return std::make_unique<EtherNode>(spec);
-}
-
 }  // namespace puckloop::radio

@@ -5,7 +5,9 @@
 //
 // Modules hear one another only on the same channel with the same PAN id.
 
+#include "base/fields/field.h"
 #include "cosim/core/node.h"
+#include "cosim/core/seconds_form.h"
 #include "emu/radio/mesh.h"
 
 #include <memory>
@@ -16,18 +18,40 @@
 namespace puckloop::radio {
 
 struct EtherStation {
-    std::string name;  ///< of the port
-    Position at{};     ///< m
+    std::string name;
+    Position at{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("name", &EtherStation::name, "of the port").required(),
+                     field("at", &EtherStation::at, "where the aerial is").in("m").required());
+    }
 };
+static_assert(lists_all_fields<EtherStation>);
 
 struct EtherSpec {
+    static constexpr std::string_view kKind = "ether";
+
     std::string name = "ether";
     std::uint64_t seed = 1;
     Propagation propagation{};
-    cosim::Time processing = cosim::kMillisecond;  ///< between hearing a frame and handing it on, > 0
+    cosim::Time processing = cosim::kMillisecond;
     std::vector<EtherStation> stations{};
     std::vector<cosim::CarriedFault> faults{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(
+            field("name", &EtherSpec::name, "of the node"), field("seed", &EtherSpec::seed, "of the run"),
+            part(&EtherSpec::propagation),
+            field("processing_s", &EtherSpec::processing, "between hearing a frame and handing it on")
+                .in("s")
+                .above(0)
+                .as<cosim::Seconds>(),
+            field("stations", &EtherSpec::stations, "the modules").required(), unlisted(&EtherSpec::faults));
+    }
 };
+static_assert(lists_all_fields<EtherSpec>);
 
 class EtherNode : public cosim::Node, private MeshUser {
   public:
@@ -61,9 +85,5 @@ class EtherNode : public cosim::Node, private MeshUser {
     cosim::Time granted_ = 0;
     std::vector<std::string> warnings_;  ///< each once
 };
-
-/// From JSON: {"name", "seed", "range_m", "exponent", "loss", "processing_s", "stations": [{"name", "at"}]},
-/// "faults": [...], all but a station's fields optional. Throws InputError.
-std::unique_ptr<cosim::Node> make_ether_node(std::string_view json);
 
 }  // namespace puckloop::radio

@@ -10,6 +10,7 @@
 // 3. Against others on the channel a frame is read if it is 3 dB stronger than each that overlaps it
 //    anywhere (co-channel rejection of such receivers), else not. Channels do not disturb one another.
 
+#include "base/fields/field.h"
 #include "cosim/core/time.h"
 
 #include <array>
@@ -20,15 +21,27 @@
 namespace puckloop::radio {
 
 struct Propagation {
-    double range_m = 30.0;  ///< at which a frame sent with full power arrives at the sensitivity, > 0
-    double exponent = 3.5;  ///< of distance, > 0
-    double loss = 0.0;      ///< share of frames that other users of the band spoil, 0..1
+    double range_m = 30.0;
+    double exponent = 3.5;
+    double loss = 0.0;
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("range_m", &Propagation::range_m,
+                           "distance at which a frame sent with full power arrives at the sensitivity")
+                         .in("m")
+                         .above(0),
+                     field("exponent", &Propagation::exponent, "of distance, by which power falls").above(0),
+                     field("loss", &Propagation::loss, "share of frames that other users of the band spoil")
+                         .within(0, 1));
+    }
 
     /// Received power over a distance in metres.
     double received_dbm(double sent_dbm, double distance_m) const;
     /// Probability that a frame that arrives with this power is not read; 1 below the sensitivity.
     double frame_loss(double dbm) const;
 };
+static_assert(lists_all_fields<Propagation>);
 
 inline constexpr double kSensitivityDbm = -92.0;
 inline constexpr double kFullPowerDbm = 1.42;  ///< PL = 4

@@ -17,8 +17,10 @@
 // 6. A module that wakes up hears at once, and has forgotten its routes.
 // 7. In command mode data from the air waits, as far as it fits into the buffer, until the host leaves.
 
+#include "base/fields/field.h"
 #include "base/random.h"
 #include "cosim/core/message.h"
+#include "cosim/core/seconds_form.h"
 #include "emu/radio/control.h"
 #include "emu/xbee/module_counts.h"
 #include "emu/xbee/serial_out.h"
@@ -38,17 +40,50 @@
 
 namespace puckloop::xbee {
 
+/// 64 bits as 16 hex digits.
+struct HexAddress {
+    static JsonValue write(std::uint64_t address);
+    static void read(std::uint64_t& address, const JsonValue& from, const std::string& place);
+};
+/// An object: {"AP": 2}.
+struct FlashParameters {
+    using List = std::vector<std::pair<std::string, std::uint32_t>>;
+    static JsonValue write(const List& parameters);
+    static void read(List& parameters, const JsonValue& from, const std::string& place);
+};
+
 struct ModuleOptions {
-    std::string name = "xbee";  ///< the random stream is "<name>/discovery"
+    std::string name = "xbee";
     std::uint64_t seed = 1;
-    std::uint64_t address = 0x0013A20040000000;  ///< SH and SL
-    /// What was written into its flash: commands with values, in the range of the table.
+    std::uint64_t address = 0x0013A20040000000;
     std::vector<std::pair<std::string, std::uint32_t>> parameters{};
     std::string node_identifier = " ";
-    cosim::Time start = 0;                         ///< switched on
-    cosim::Time boot = 50 * cosim::kMillisecond;   ///< from reset to modem status, >= processing
-    cosim::Time processing = cosim::kMillisecond;  ///< of a frame from either side, > 0
+    cosim::Time start = 0;
+    cosim::Time boot = 50 * cosim::kMillisecond;
+    cosim::Time processing = cosim::kMillisecond;
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(
+            field("name", &ModuleOptions::name, "of the node; the random stream is \"<name>/discovery\""),
+            field("seed", &ModuleOptions::seed, "of the run"),
+            field("address", &ModuleOptions::address, "SH and SL").as<HexAddress>(),
+            field("parameters", &ModuleOptions::parameters,
+                  "what was written into its flash: commands with values, in the range of the table")
+                .as<FlashParameters>(),
+            field("node_identifier", &ModuleOptions::node_identifier, "NI"),
+            field("start_s", &ModuleOptions::start, "switched on").in("s").at_least(0).as<cosim::Seconds>(),
+            field("boot_s", &ModuleOptions::boot, "from reset to modem status, not below processing_s")
+                .in("s")
+                .above(0)
+                .as<cosim::Seconds>(),
+            field("processing_s", &ModuleOptions::processing, "of a frame from either side")
+                .in("s")
+                .above(0)
+                .as<cosim::Seconds>());
+    }
 };
+static_assert(lists_all_fields<ModuleOptions>);
 
 /// Where a module's radio leads.
 class ModuleAir {

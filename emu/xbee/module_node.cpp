@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "protocols/uart_sampling.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 
 namespace puckloop::xbee {
@@ -109,34 +107,6 @@ Time ModuleNode::lookahead(cosim::PortIndex port) const {
 
 std::string ModuleNode::finish() {
     return to_json(module_);
-}
-
-std::unique_ptr<cosim::Node> make_module_node(std::string_view text) {
-    ModuleOptions options;
-    std::map<std::string, std::uint16_t> pins;
-    try {
-        const auto json = nlohmann::json::parse(text);
-        options.name = json.value("name", options.name);
-        options.seed = json.value("seed", options.seed);
-        if (json.contains("address"))
-            options.address = std::stoull(json["address"].get<std::string>(), nullptr, 16);
-        options.node_identifier = json.value("node_identifier", options.node_identifier);
-        const auto time = [&](const char* key, Time value) {
-            return cosim::from_seconds(json.value(key, cosim::to_seconds(value)));
-        };
-        options.start = time("start_s", options.start);
-        options.boot = time("boot_s", options.boot);
-        options.processing = time("processing_s", options.processing);
-        if (json.contains("parameters"))
-            for (const auto& [command, value] : json["parameters"].items())
-                options.parameters.emplace_back(command, value.get<std::uint32_t>());
-        pins = json.value("pins", pins);
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "radio module description", error.what());
-    } catch (const std::logic_error&) {
-        throw InputError("", "radio module description", "bad address", "16 hex digits");
-    }
-    return std::make_unique<ModuleNode>(options, pins);
 }
 
 }  // namespace puckloop::xbee

@@ -18,6 +18,20 @@
 
 namespace puckloop::xbee {
 
+struct ModuleSpec {
+    static constexpr std::string_view kKind = "xbee";
+
+    ModuleOptions module{};
+    std::map<std::string, std::uint16_t> pins{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(part(&ModuleSpec::module),
+                     field("pins", &ModuleSpec::pins, "the signals of the module's board by name"));
+    }
+};
+static_assert(lists_all_fields<ModuleSpec>);
+
 class ModuleNode : public cosim::Node, private ModuleAir {
   public:
     static constexpr cosim::PortIndex kUart = 0, kPins = 1, kRadio = 2;
@@ -56,9 +70,5 @@ class ModuleNode : public cosim::Node, private ModuleAir {
 
 /// A module's counters for the report, as JSON text.
 std::string to_json(const Module& module);
-
-/// From JSON: {"name", "seed", "address" ("0013A200..." hex), "node_identifier", "parameters": {"AP": 2,
-/// ...}, "start_s", "boot_s", "processing_s", "pins": {name: id}}. Throws InputError.
-std::unique_ptr<cosim::Node> make_module_node(std::string_view json);
 
 }  // namespace puckloop::xbee

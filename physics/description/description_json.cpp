@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "physics/description/description_fields.h"
+#include "physics/description/world_form.h"
 
 namespace puckloop::physics {
 
@@ -16,6 +17,14 @@ World from_json(std::string_view text) {
         throw InputError("", "", std::string("world description: ") + error.what(),
                          "JSON as to_json writes it");
     }
+}
+
+JsonValue WorldForm::write(const World& world) {
+    return parse_json(to_json(world));
+}
+
+void WorldForm::read(World& world, const JsonValue& from, const std::string& /*place*/) {
+    world = from_json(dump(from));
 }
 
 }  // namespace puckloop::physics

@@ -349,17 +349,4 @@ std::string IrNode::finish() {
     return json + "}";
 }
 
-std::unique_ptr<cosim::Node> make_ir_node(std::string_view json) {
-    try {
-        const auto spec = nlohmann::json::parse(json);
-        return std::make_unique<IrNode>(
-            from_json(spec.at("world").dump()),
-            IrNodeOptions{spec.value("name", "ir"), spec.value("csv", ""), spec.value("changes", false),
-                          spec.contains("faults") ? cosim::faults_from_json(spec["faults"])
-                                                  : std::vector<cosim::CarriedFault>{}});
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "infra-red medium", error.what());
-    }
-}
-
 }  // namespace puckloop::physics

@@ -9,9 +9,10 @@
 // ir.level_delay. The shortest of them is what the boards can run ahead of each other. Poses take effect when
 // a burst begins.
 
+#include "base/fields/field.h"
 #include "cosim/core/node.h"
 #include "cosim/faults/fault_json.h"
-#include "physics/description/description.h"
+#include "physics/description/world_form.h"
 
 #include <memory>
 
@@ -19,10 +20,36 @@ namespace puckloop::physics {
 
 struct IrNodeOptions {
     std::string name = "ir";
-    std::string frames_csv{};  ///< file for what was on the air (physics/ir/ir_frames.h); empty: none
-    bool changes = false;      ///< events change the world: the port "world" has more than poses
+    std::string frames_csv{};
+    bool changes = false;
     std::vector<cosim::CarriedFault> faults{};  ///< of the light (physics/ir/ir_faults.h)
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("name", &IrNodeOptions::name, "of the node"),
+                     field("csv", &IrNodeOptions::frames_csv,
+                           "file for what was on the air (physics/ir/ir_frames.h); empty: none"),
+                     field("changes", &IrNodeOptions::changes,
+                           "events change the world: the port \"world\" has more than poses"),
+                     unlisted(&IrNodeOptions::faults));
+    }
 };
+static_assert(lists_all_fields<IrNodeOptions>);
+
+/// The medium as a run describes it.
+struct IrSpec {
+    static constexpr std::string_view kKind = "ir";
+
+    World world{};
+    IrNodeOptions options{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("world", &IrSpec::world, "robots, walls and light").required().as<WorldForm>(),
+                     part(&IrSpec::options));
+    }
+};
+static_assert(lists_all_fields<IrSpec>);
 
 class IrNode final : public cosim::Node {
   public:
@@ -45,9 +72,5 @@ class IrNode final : public cosim::Node {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// {"kind": "ir", "name", "world": as to_json(World) writes it, "csv": file or "", "changes": bool,
-/// "faults": list or none}.
-std::unique_ptr<cosim::Node> make_ir_node(std::string_view json);
 
 }  // namespace puckloop::physics

@@ -228,23 +228,4 @@ std::string IrcomNode::finish() {
     return report + "}";
 }
 
-std::unique_ptr<cosim::Node> make_ircom_node(std::string_view json) {
-    try {
-        const auto spec = nlohmann::json::parse(json);
-        IrcomNodeOptions options;
-        options.name = spec.value("name", "ircom");
-        spec.at("pulse").get_to(options.ids.pulse);
-        spec.at("light").get_to(options.ids.light);
-        spec.at("emit").get_to(options.ids.emit);
-        spec.at("sense").get_to(options.ids.sense);
-        options.words_csv = spec.value("csv", "");
-        options.changes = spec.value("changes", false);
-        if (spec.contains("faults"))
-            options.faults = cosim::faults_from_json(nlohmann::ordered_json::parse(spec["faults"].dump()));
-        return std::make_unique<IrcomNode>(from_json(spec.at("world").dump()), options);
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "IRcom's medium", error.what());
-    }
-}
-
 }  // namespace puckloop::physics

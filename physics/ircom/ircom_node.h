@@ -11,9 +11,10 @@
 // A device that no other's light can reach has a lookahead of a millisecond (physics/ircom/scene.h), so that
 // it need not wait for the others' every instruction.
 
+#include "base/fields/field.h"
 #include "cosim/core/node.h"
 #include "cosim/faults/fault_json.h"
-#include "physics/description/description.h"
+#include "physics/description/world_form.h"
 
 #include <array>
 #include <cstdint>
@@ -28,15 +29,51 @@ struct IrcomIds {
     std::array<std::uint16_t, 4> pulse{};
     std::array<std::uint16_t, 8> light{};
     std::uint16_t emit = 0, sense = 0;
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("pulse", &IrcomIds::pulse, "of a main board's four pulse lines").required(),
+                     field("light", &IrcomIds::light, "at its eight phototransistors").required(),
+                     field("emit", &IrcomIds::emit, "of a TAM's transceiver: it emits").required(),
+                     field("sense", &IrcomIds::sense, "and it sees light").required());
+    }
 };
+static_assert(lists_all_fields<IrcomIds>);
 
 struct IrcomNodeOptions {
     std::string name = "ircom";
     IrcomIds ids{};
-    std::string words_csv{};  ///< file for the words that were sent (physics/ircom/words.h); empty: none
-    bool changes = false;     ///< events change the world: the port "world" has more than poses
+    std::string words_csv{};
+    bool changes = false;
     std::vector<cosim::CarriedFault> faults{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(field("name", &IrcomNodeOptions::name, "of the node"), part(&IrcomNodeOptions::ids),
+                     field("csv", &IrcomNodeOptions::words_csv,
+                           "file for the words that were sent (physics/ircom/words.h); empty: none"),
+                     field("changes", &IrcomNodeOptions::changes,
+                           "events change the world: the port \"world\" has more than poses"),
+                     unlisted(&IrcomNodeOptions::faults));
+    }
 };
+static_assert(lists_all_fields<IrcomNodeOptions>);
+
+/// The medium as a run describes it.
+struct IrcomSpec {
+    static constexpr std::string_view kKind = "ircom";
+
+    World world{};
+    IrcomNodeOptions options{};
+
+    template <class Visitor>
+    static constexpr auto fields(Visitor&& visit) {
+        return visit(
+            field("world", &IrcomSpec::world, "robots, TAMs, walls and light").required().as<WorldForm>(),
+            part(&IrcomSpec::options));
+    }
+};
+static_assert(lists_all_fields<IrcomSpec>);
 
 class IrcomNode final : public cosim::Node {
   public:
@@ -58,9 +95,5 @@ class IrcomNode final : public cosim::Node {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// {"kind": "ircom", "name", "world": as to_json(World) writes it, "pulse": [4 ids], "light": [8], "emit",
-/// "sense", "csv": file or "", "changes": bool, "faults": [...]}.
-std::unique_ptr<cosim::Node> make_ircom_node(std::string_view json);
 
 }  // namespace puckloop::physics

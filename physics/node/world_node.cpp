@@ -325,10 +325,4 @@ std::string WorldNode::finish() {
     return report.dump();
 }
 
-std::unique_ptr<cosim::Node> make_world_node(std::string_view world, std::string_view plan,
-                                             std::unique_ptr<CommandSource> commands, bool bluetooth) {
-    return std::make_unique<WorldNode>(from_json(world), plan_from_json(plan), std::move(commands),
-                                       bluetooth);
-}
-
 }  // namespace puckloop::physics

@@ -46,8 +46,4 @@ class WorldNode final : public cosim::Node {
     std::unique_ptr<Impl> impl_;
 };
 
-/// From the JSON texts that to_json() of World and EventPlan write.
-std::unique_ptr<cosim::Node> make_world_node(std::string_view world, std::string_view plan,
-                                             std::unique_ptr<CommandSource> commands, bool bluetooth = false);
-
 }  // namespace puckloop::physics

@@ -4,7 +4,6 @@
 #include "run/factory/node_factory.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <poll.h>
 
@@ -15,11 +14,9 @@ namespace puckloop::tools {
 
 namespace {
 
-using nlohmann::json;
-
 /// What cannot go back, and why; empty: all of the run can.
 std::string fixed(const RunSetup& setup, const RunRequest& request) {
-    for (const cosim::NodeSpec& node : setup.nodes)
+    for (const PlannedNode& node : setup.nodes)
         if (node.outside) return node.name + " is a line to the outside, which cannot go back";
     if (request.realtime || request.paced) return "the run is paced by the wall clock, which cannot go back";
     if (!request.live.empty()) return "--live has given away what would have to be taken back";
@@ -31,21 +28,18 @@ std::string fixed(const RunSetup& setup, const RunRequest& request) {
 RunDebuggers::RunDebuggers(const RunSetup& setup, const RunRequest& request,
                            const volatile std::sig_atomic_t* abort_requested)
     : origin_(request.snapshot), abort_requested_(abort_requested), no_way_back_(fixed(setup, request)) {
-    for (const cosim::NodeSpec& node : setup.nodes) {
-        const json spec = json::parse(node.json);
-        if (!spec.contains("gdb")) continue;
-        boards_.push_back(std::make_unique<BoardDebugger>(*this, boards_.size(), node.name,
-                                                          spec["gdb"].get<std::string>()));
-    }
+    for (const PlannedNode& node : setup.nodes)
+        if (const std::string& place = node.what.care.gdb; !place.empty())
+            boards_.push_back(std::make_unique<BoardDebugger>(*this, boards_.size(), node.name, place));
 }
 
 std::unique_ptr<cosim::Node> RunDebuggers::make_node(const std::string& text) {
-    const json spec = json::parse(text);
-    if (!spec.contains("gdb")) return tools::make_node(text);
+    NodeDescription node = decode(text);
+    if (node.care.gdb.empty()) return tools::make_node(node);
     const auto debugger = std::find_if(boards_.begin(), boards_.end(), [&](const auto& board) {
-        return board->name() == spec.at("name").get<std::string>();
+        return board->name() == board_fields(node).name;
     });
-    return make_debugged(make_board(spec), **debugger);
+    return make_debugged(make_board(node), **debugger);
 }
 
 void RunDebuggers::keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,

@@ -10,8 +10,8 @@
 #include "cosim/trace/trace_csv.h"
 #include "run/debugging/board_debugger.h"
 #include "run/debugging/run_history.h"
-#include "run/options.h"
-#include "run/plan/setup.h"
+#include "run/description/run_request.h"
+#include "run/description/run_setup.h"
 
 #include <functional>
 #include <memory>

@@ -1,20 +1,20 @@
 #pragma once
-// Makes nodes from their JSON descriptions: the one place that knows every kind.
+// Makes nodes from their descriptions: the one place that knows how of every kind.
 
 #include "cosim/core/stateful_node.h"
-
-#include <nlohmann/json_fwd.hpp>
+#include "run/description/node_description.h"
 
 #include <memory>
 #include <string>
 
 namespace puckloop::tools {
 
-/// A "pic", "rab" or "tam" at power-up, whatever the description states of states.
-std::unique_ptr<cosim::StatefulNode> make_board(const nlohmann::json& spec);
+/// At power-up, whatever the description has of states; of a node with has_board(). Throws InputError.
+std::unique_ptr<cosim::StatefulNode> make_board(const NodeDescription& board);
 
-/// `json` has "kind": "pic", "rab", "tam", "linux", "world", "ir", "i2c_bus", "outside", "xbee" or "ether",
-/// and what that kind needs. Throws InputError.
-std::unique_ptr<cosim::Node> make_node(const std::string& json);
+/// Throws InputError.
+std::unique_ptr<cosim::Node> make_node(const NodeDescription& node);
+/// From what encode() gave.
+std::unique_ptr<cosim::Node> make_described(const std::string& text);
 
 }  // namespace puckloop::tools

@@ -30,7 +30,7 @@ std::optional<int> serve_as_node(int count, char** words) {
     if (std::getenv(kInterpret) != nullptr) chip::set_translation(false);
     ::unsetenv(kInterpret);
     log::info("started for this node");
-    const int status = cosim::serve_node(cosim::protocol::kDescriptor, make_node);
+    const int status = cosim::serve_node(cosim::protocol::kDescriptor, make_described);
     log::info("ends with status {}", status);
     return status;
 }

@@ -5,13 +5,11 @@
 #include "ends/scripts.h"
 #include "ends/text_input.h"
 #include "protocols/uart_sampling.h"
-#include "run/plan/program_path.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <filesystem>
 
 namespace puckloop::tools {
 
@@ -44,14 +42,6 @@ std::unique_ptr<exec::UartEnd> make_end(const OutsideSpec& outside) {
 }
 
 }  // namespace
-
-exec::UartSpec parse_outside(const std::string& place, const std::string& text, const std::string& folder) {
-    exec::UartSpec spec = exec::parse_uart_spec(place, text);
-    if (spec.kind == exec::UartSpec::Kind::Stdio)
-        throw InputError("", place, "a run has no standard input to give", "pty, tcp:PORT or script:FILE");
-    if (!spec.file.empty()) spec.file = full_path(std::filesystem::path(folder) / spec.file).string();
-    return spec;
-}
 
 OutsideNode::OutsideNode(const OutsideSpec& spec)
     : name_(spec.name),

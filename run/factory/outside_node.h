@@ -6,7 +6,7 @@
 
 #include "cosim/core/node.h"
 #include "ends/uart_end.h"
-#include "ends/uart_spec.h"
+#include "run/description/outside_spec.h"
 
 #include <cstdio>
 #include <memory>
@@ -14,17 +14,6 @@
 #include <vector>
 
 namespace puckloop::tools {
-
-/// "pty", "tcp:PORT" or "script:FILE", a file's path counted from `folder`. Throws InputError naming `place`.
-exec::UartSpec parse_outside(const std::string& place, const std::string& text, const std::string& folder);
-
-struct OutsideSpec {
-    std::string name;        ///< of the node: "robot0.uart1"
-    exec::UartSpec end;      ///< script, pty or TCP
-    double baud = 115200.0;  ///< of the outside's own UART
-    std::string record;      ///< file for the bytes that came from the robot; empty: none
-    cosim::Time quiet = 0;   ///< a live end is not listened to, and hears nothing, before
-};
 
 class OutsideNode : public cosim::Node {
   public:

@@ -4,8 +4,6 @@
 #include "linuxboard/shim/node/program_file.h"
 #include "run/factory/node_factory.h"
 
-#include <nlohmann/json.hpp>
-
 #include <set>
 #include <string>
 
@@ -26,15 +24,17 @@ void check_program(const std::string& node, const std::string& program) {
 
 void check_files(const RunSetup& setup) {
     std::set<std::string> known;  // robots of a swarm differ in little else than their names
-    for (const cosim::NodeSpec& node : setup.nodes) {
-        auto spec = nlohmann::json::parse(node.json);
-        spec.erase("log");  // this one leaves nothing on disk
-        if (spec.at("kind") == "linux") check_program(node.name, spec.at("program"));
-        if (spec.at("kind") != "pic" && spec.at("kind") != "rab" && spec.at("kind") != "tam") continue;
-        auto what = spec;
-        what.erase("name");
-        what.erase("seed");
-        if (known.insert(what.dump()).second) make_board(spec);
+    for (const PlannedNode& node : setup.nodes) {
+        if (const auto* linux = std::get_if<LinuxProgram>(&node.what.kind))
+            check_program(node.name, linux->program.program);
+        if (!has_board(node.what)) continue;
+        NodeDescription spec = node.what;
+        board_fields(spec).log.clear();  // this one leaves nothing on disk
+        NodeDescription what = spec;
+        board_fields(what).name.clear();
+        board_fields(what).seed = 0;
+        what.care = {};
+        if (known.insert(encode(what)).second) make_board(spec);
     }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // What can be known to fail before the run begins, and before an earlier run's results are touched.
 
-#include "run/plan/setup.h"
+#include "run/description/run_setup.h"
 
 namespace puckloop::tools {
 

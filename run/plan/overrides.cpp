@@ -1,7 +1,7 @@
 #include "run/plan/overrides.h"
 
 #include "base/error.h"
-#include "run/plan/program_path.h"
+#include "run/files/program_path.h"
 #include "scenarios/reader/events/event_tables.h"
 #include "scenarios/reader/faults/fault_tables.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // What the command line changes in a scenario.
 
-#include "run/options.h"
+#include "run/description/run_request.h"
 #include "scenarios/reader/scenario.h"
 
 namespace puckloop::tools {

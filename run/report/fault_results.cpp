@@ -2,14 +2,15 @@
 
 #include "base/error.h"
 #include "cosim/faults/fault_json.h"
+#include "cosim/faults/kinds/kind_facts.h"
 #include "cosim/trace/trace_row.h"
+#include "run/plan/node_faults.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <fstream>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -31,31 +32,13 @@ std::string why_it_did_not(const RunSetup& setup, const cosim::FaultReport& repo
     if (fault->begin >= end)
         return fmt::format("; its window begins at {:.3f} s and the run ended at {:.3f} s",
                            cosim::to_seconds(fault->begin), cosim::to_seconds(end));
-    if (fault->node.ends_with(".linux") &&
-        (fault->kind == "pause" || fault->kind == "kill" || fault->kind == "restart"))
-        return "; its program was not running then";
-    if (fault->kind == "sda" || fault->kind == "scl")
-        return "; no byte that it is for was on the bus while it held the line (without address, register, "
-               "phase or position it holds it once, from its begin on)";
-    if (fault->kind == "parity") return "; frames without a parity bit are no candidates";
-    const bool chosen = !fault->match.empty() || !fault->bytes.empty() || fault->position || fault->skip > 0;
-    if (!fault->link.empty() && chosen)
-        return "; no frame in its window is one that match, bytes, position and skip choose";
-    return "";
+    const std::string_view why = cosim::why_silent(*fault);
+    return why.empty() ? "" : fmt::format("; {}", why);
 }
 
 /// A node's report, null if it could not give one.
 ordered_json report_of_node(const cosim::Outcome::NodeReport& node) {
     return node.json.empty() ? ordered_json() : ordered_json::parse(node.json, nullptr, false);
-}
-
-/// The range-and-bearing board that a fault of its robot's battery reaches, too; empty: none. The battery is
-/// the main board's, and the fault's evidence is from there.
-std::string shared_with(const RunSetup& setup, const cosim::FaultSpec& fault) {
-    if (fault.kind != "sag" && fault.kind != "battery") return "";
-    for (const scenarios::RobotBoards& robot : setup.scenario.robots)
-        if (robot.rab && fault.node == robot.name + ".pic") return robot.name + ".rab";
-    return "";
 }
 
 bool has_evidence(const RunSetup& setup, const std::string& node, const std::string& name) {
@@ -73,28 +56,6 @@ ordered_json to_json(const cosim::Firing& firing) {
 }
 
 }  // namespace
-
-void assign_faults(RunSetup& setup) {
-    auto& faults = setup.scenario.faults;
-    cosim::name_faults(faults);
-    std::map<std::string, ordered_json> lists;
-    const auto hand_to = [&](const std::string& node, std::size_t f) {
-        if (!node.empty()) lists[node].push_back(cosim::fault_to_json(faults[f], setup.scenario.seed, f));
-    };
-    for (std::size_t f = 0; f < faults.size(); ++f)
-        hand_to(shared_with(setup, faults[f]), f);  // first: of two profiles a board's own holds
-    for (std::size_t f = 0; f < faults.size(); ++f)
-        hand_to(faults[f].node, f);
-    for (const auto& [name, list] : lists) {
-        const auto node = std::find_if(setup.nodes.begin(), setup.nodes.end(),
-                                       [&](const cosim::NodeSpec& one) { return one.name == name; });
-        if (node == setup.nodes.end())
-            throw InputError("", "fault", fmt::format("there is no node {}", name));
-        ordered_json json = ordered_json::parse(node->json);
-        json["faults"] = list;
-        node->json = json.dump();
-    }
-}
 
 void take_fault_results(const RunSetup& setup, cosim::Outcome& outcome) {
     for (const auto& node : outcome.nodes) {

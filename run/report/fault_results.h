@@ -1,8 +1,8 @@
 #pragma once
-// Faults of a run: handed to the nodes that carry them out, and what came of all of them.
+// What came of a run's faults.
 
 #include "cosim/conductor.h"
-#include "run/plan/setup.h"
+#include "run/description/run_setup.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -10,10 +10,6 @@
 #include <string>
 
 namespace puckloop::tools {
-
-/// Names the faults and gives those of nodes to their nodes' descriptions; again, if faults were added since.
-/// Throws InputError for a node that is not there.
-void assign_faults(RunSetup& setup);
 
 /// Takes what nodes say of their faults into the outcome's reports. A run in which a fault never fired that
 /// had to is no success.

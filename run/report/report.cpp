@@ -1,10 +1,10 @@
 #include "run/report/report.h"
 
 #include "base/error.h"
+#include "run/plan/state_plan.h"
+#include "run/plan/stats_plan.h"
 #include "run/report/fault_results.h"
 #include "run/report/supply_resets.h"
-#include "run/states/state_plan.h"
-#include "run/stats/stats_plan.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

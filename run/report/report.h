@@ -2,7 +2,7 @@
 // report.json: what a run did, for people and for programs.
 
 #include "cosim/conductor.h"
-#include "run/plan/setup.h"
+#include "run/description/run_setup.h"
 #include "run/report/reserved_file.h"
 
 #include <string>

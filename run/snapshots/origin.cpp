@@ -18,9 +18,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Keys of node descriptions that decide nothing of what a node does, or are compared by themselves.
-constexpr std::array kLeftOut{"faults",     "from_state", "save_state", "gdb",  "stats",   "nvm",
-                              "watchdog_s", "quiet_ps",   "control",    "live", "repeats", "journal"};
+/// Of a plan of events: how they come and where they are recorded is no part of what happens.
+constexpr std::array kLeftOut{"live", "repeats", "journal"};
 
 /// Node descriptions with the results folder as "<out>" and the scenario as "<scenario>", wherever they are,
 /// and the files that they name.
@@ -29,8 +28,8 @@ class Descriptions {
     explicit Descriptions(const RunSetup& setup)
         : out_(setup.out.string()), scenario_(setup.scenario.file.string()) {}
 
-    json of(const cosim::NodeSpec& node) {
-        json spec = json::parse(node.json);
+    json of(const PlannedNode& node) {
+        json spec = json::parse(dump(compared(node.what, Comparison::Run)));
         clean(spec);
         return spec;
     }
@@ -72,7 +71,7 @@ json links_of(const RunSetup& setup) {
 json run_of(const RunSetup& setup) {
     Descriptions descriptions(setup);
     json nodes = json::object();
-    for (const cosim::NodeSpec& node : setup.nodes)
+    for (const PlannedNode& node : setup.nodes)
         nodes[node.name] = descriptions.of(node);
     return {{"nodes", nodes}, {"files", descriptions.files()}, {"links", links_of(setup)}};
 }

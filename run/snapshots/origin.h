@@ -2,8 +2,8 @@
 // Whose run a snapshot is: the request that made it, what its nodes and links were made from, and its faults.
 // A run goes on from it only if all of that is the same, but for faults that begin later.
 
-#include "run/options.h"
-#include "run/plan/setup.h"
+#include "run/description/run_request.h"
+#include "run/description/run_setup.h"
 
 #include <string>
 

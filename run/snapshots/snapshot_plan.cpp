@@ -4,12 +4,11 @@
 #include "cosim/resume/run_snapshot.h"
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
-#include "run/plan/linux_nodes.h"
-#include "run/plan/writable_file.h"
+#include "run/files/writable_file.h"
+#include "run/nodes/linux_nodes.h"
 #include "run/snapshots/origin.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -54,12 +53,8 @@ void plan_saving(RunSetup& setup, const RunRequest& request) {
 /// Live ends heard what they heard; from the snapshot on they are there again.
 void quiet_outside(RunSetup& setup, cosim::Time until) {
     setup.ready = std::max(setup.ready, until);
-    for (cosim::NodeSpec& node : setup.nodes) {
-        auto spec = nlohmann::json::parse(node.json);
-        if (spec.at("kind") != "outside") continue;
-        spec["quiet_ps"] = until;
-        node.json = spec.dump();
-    }
+    for (PlannedNode& node : setup.nodes)
+        if (auto* outside = std::get_if<OutsideSpec>(&node.what.kind)) outside->quiet = until;
 }
 
 void check_faults(const cosim::RunSnapshot& snapshot, const RunSetup& setup, const std::string& file) {

@@ -3,8 +3,8 @@
 
 #include "cosim/conductor.h"
 #include "cosim/trace/trace_csv.h"
-#include "run/options.h"
-#include "run/plan/setup.h"
+#include "run/description/run_request.h"
+#include "run/description/run_setup.h"
 
 #include <filesystem>
 #include <optional>

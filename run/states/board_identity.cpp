@@ -4,36 +4,81 @@
 #include "emu/image/avr_image.h"
 #include "emu/image/image.h"
 
-#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
 
 namespace puckloop::tools {
 
-bool has_state(const nlohmann::json& spec) {
-    const std::string kind = spec.at("kind");
-    return kind == "pic" || kind == "rab" || kind == "tam";
+namespace {
+
+cosim::BoardIdentity dspic_board(const std::string& firmware, const char* kind, const char* chip) {
+    return {.node = {},
+            .kind = kind,
+            .chip = chip,
+            .image = image::load_image(firmware).sha256,
+            .parameters = {}};
 }
 
-cosim::BoardIdentity identity_of(const nlohmann::json& spec) {
-    const std::string kind = spec.at("kind");
-    const std::string firmware = spec.at("firmware");
-    cosim::BoardIdentity board;
-    board.node = spec.at("name");
-    if (kind == "tam") {
-        board.kind = "TAM board";
-        board.chip = "ATmega1284P";
-        board.image = image::load_avr_image(firmware, avr::atmega1284p().image_part()).sha256;
-    } else {
-        board.kind = kind == "pic" ? "e-puck main board" : "range-and-bearing board";
-        board.chip = kind == "pic" ? "dsPIC30F6014A" : "dsPIC33FJ256GP710";
-        board.image = image::load_image(firmware).sha256;
+struct Identity {
+    cosim::BoardIdentity operator()(const MainBoard& main) const {
+        return dspic_board(main.board.firmware, "e-puck main board", "dsPIC30F6014A");
     }
-    // Neither where the files are nor what is saved decides how the board runs.
-    nlohmann::json parameters = spec;
-    for (const char* key : {"kind", "name", "firmware", "log", "camera_log", "from_state", "save_state",
-                            "pins_linked", "ir_linked", "stats"})
-        parameters.erase(key);
-    board.parameters = parameters.dump();
-    return board;
+    cosim::BoardIdentity operator()(const rab::RabSpec& rab) const {
+        return dspic_board(rab.firmware, "range-and-bearing board", "dsPIC33FJ256GP710");
+    }
+    cosim::BoardIdentity operator()(const tam::TamSpec& tam) const {
+        const auto image = image::load_avr_image(tam.firmware, avr::atmega1284p().image_part());
+        return {
+            .node = {}, .kind = "TAM board", .chip = "ATmega1284P", .image = image.sha256, .parameters = {}};
+    }
+    cosim::BoardIdentity operator()(const auto& /*other*/) const { throw std::logic_error("no board"); }
+};
+
+/// Neither where files are nor what is saved decides how the board runs; its faults do.
+JsonValue parameters_of(const NodeDescription& board) {
+    JsonValue parameters = compared(board, Comparison::State);
+    parameters.erase("kind");
+    for (const cosim::NodeFault& fault : board.faults) {
+        if (parameters.find("faults") == nullptr) parameters.set("faults", JsonValue::Array{});
+        parameters.find("faults")->push(cosim::to_value(fault));
+    }
+    return parameters;
+}
+
+/// The same board with everything as it is by default.
+NodeDescription standard(const NodeDescription& board) {
+    return std::visit([]<class Kind>(const Kind&) { return NodeDescription{Kind{}}; }, board.kind);
+}
+
+}  // namespace
+
+cosim::BoardIdentity identity_of(const NodeDescription& board) {
+    cosim::BoardIdentity identity = std::visit(Identity{}, board.kind);
+    NodeDescription copy = board;
+    identity.node = board_fields(copy).name;
+    identity.parameters = dump(parameters_of(board));
+    return identity;
+}
+
+std::string other_parameters(const cosim::BoardIdentity& saved, const NodeDescription& board) {
+    JsonValue before;
+    try {
+        before = parse_json(saved.parameters);
+    } catch (const std::invalid_argument&) {
+        // As of what is no object.
+    }
+    if (before.object() == nullptr) return "parameters";
+    const JsonValue now = parameters_of(board), defaults = parameters_of(standard(board));
+    std::set<std::string> names;
+    for (const JsonMember& member : *now.object()) {
+        const JsonValue* then = before.find(member.key);
+        if (then == nullptr) then = defaults.find(member.key);
+        if (then == nullptr || !(*then == member.value)) names.insert(member.key);
+    }
+    std::string list;
+    for (const std::string& name : names)
+        list += (list.empty() ? "" : ", ") + name;
+    return list;
 }
 
 }  // namespace puckloop::tools

@@ -1,16 +1,15 @@
 #pragma once
-// Whose state a state is: from a board's node description.
+// Whose state a state is: from a board's description.
 
 #include "cosim/resume/board_state.h"
-
-#include <nlohmann/json_fwd.hpp>
+#include "run/description/node_description.h"
 
 namespace puckloop::tools {
 
-/// Of a "pic", "rab" or "tam" description. Reads the firmware's file for its hash; throws InputError.
-cosim::BoardIdentity identity_of(const nlohmann::json& spec);
+/// Of a node with has_board(). Reads the firmware's file for its hash; throws InputError.
+cosim::BoardIdentity identity_of(const NodeDescription& board);
 
-/// True if the description is of a board whose state can be saved.
-bool has_state(const nlohmann::json& spec);
+/// Parameters that a board has otherwise than when it was saved: "crystal_ppm, seed"; empty: none.
+std::string other_parameters(const cosim::BoardIdentity& saved, const NodeDescription& board);
 
 }  // namespace puckloop::tools

@@ -6,18 +6,14 @@
 #include "run/states/boot_cache.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 namespace puckloop::tools {
 
 namespace {
-
-using nlohmann::json;
-
-constexpr const char* kFromCache = "cache";
 
 cosim::BoardState state_of(const std::string& path, const std::string& node) {
     cosim::StateFile file = cosim::read_state_file(path);
@@ -42,25 +38,24 @@ void take_from_cache(const std::string& path, cosim::Time at, cosim::ResumeOptio
 
 }  // namespace
 
-std::unique_ptr<cosim::Node> with_state(const json& spec, cosim::ResumedNode::Make make) {
-    if (!spec.contains("from_state") && !spec.contains("save_state")) return make();
+std::unique_ptr<cosim::Node> with_state(const NodeDescription& board, cosim::ResumedNode::Make make) {
+    const auto& [from, save] = std::tie(board.care.from_state, board.care.save_state);
+    if (!from && !save) return make();
     cosim::ResumeOptions options;
-    options.board = identity_of(spec);
-    const json from = spec.value("from_state", json::object());
-    const json save = spec.value("save_state", json::object());
-    options.source = from.value("source", "");
-    options.fall_back = options.source == kFromCache;
-    options.save_at = save.value("at_ps", cosim::Time{0});
+    options.board = identity_of(board);
+    if (from) options.source = from->cache ? "cache" : "file";
+    options.fall_back = from && from->cache;
+    if (save) options.save_at = save->at;
     if (options.fall_back) {
-        take_from_cache(from.at("path"), options.save_at, options);
-    } else if (!from.empty()) {
-        options.from = state_of(from.at("path"), from.at("board"));
+        take_from_cache(from->path, options.save_at, options);
+    } else if (from) {
+        options.from = state_of(from->path, from->board);
         // Another board, or another seed: noise of its own from here on.
         options.new_random_streams = options.from->board.node != options.board.node ||
                                      options.from->board.parameters != options.board.parameters;
     }
-    if (!save.empty()) {
-        const std::string path = save.at("path");
+    if (save) {
+        const std::string& path = save->path;
         options.save = [path, cached = options.fall_back](cosim::BoardState state) -> std::string {
             try {
                 cosim::write_state_file(path, {cosim::build_id(), {std::move(state)}});

@@ -7,7 +7,7 @@
 #include "emu/image/image.h"
 #include "emu/image/symbol_sizes.h"
 #include "emu/tam_avr/tam_node.h"
-#include "run/debugging/board_chip.h"
+#include "run/stats/board_chip.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,7 @@
 #include "scenarios/reader/scenario.h"
 
 #include "base/error.h"
+#include "cosim/faults/kinds/kind_facts.h"
 #include "physics/description/parameters.h"
 #include "scenarios/reader/bluetooth_tables.h"
 #include "scenarios/reader/can_tables.h"
@@ -90,9 +91,8 @@ void check_ending(const Scenario& scenario) {
     if (!scenario.duration && !any_program)
         throw InputError(scenario.file.string(), "[run]", "nothing ends this run",
                          "duration = \"60 s\", a robot with a [robot.linux] program, or --duration");
-    const bool outlived = std::any_of(scenario.faults.begin(), scenario.faults.end(), [](const auto& fault) {
-        return fault.kind == "kill" && fault.parameters.text("run") == "goes_on";
-    });
+    const bool outlived =
+        std::any_of(scenario.faults.begin(), scenario.faults.end(), cosim::outlives_program);
     if (!scenario.duration && outlived)
         throw InputError(scenario.file.string(), "[run]",
                          "nothing ends this run once a fault killed its program",

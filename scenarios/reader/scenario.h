@@ -3,6 +3,9 @@
 // docs/scenario.md.
 
 #include "cosim/faults/faults.h"
+#include "emu/pic/pic_spec.h"
+#include "emu/rab_board/rab_spec.h"
+#include "emu/tam_avr/tam_spec.h"
 #include "physics/events/event.h"
 
 #include <cstdint>
@@ -36,8 +39,8 @@ struct BluetoothMedium {
 /// The e-puck main board of a robot.
 struct PicBoard {
     std::filesystem::path firmware;
-    double crystal_ppm = 0.0;      ///< error of the 7.3728 MHz crystal, + is fast
-    double adc_noise = 2.0;        ///< counts, standard deviation
+    double crystal_ppm = 0.0;                    ///< error of the 7.3728 MHz crystal, + is fast
+    double adc_noise = pic::PicSpec::kAdcNoise;  ///< counts, standard deviation
     bool adc_noise_given = false;  ///< by the scenario: then it holds for the phototransistors in any case
     int selector = 0;              ///< position of the rotary selector, 0..15
     std::string uart1;             ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
@@ -55,9 +58,9 @@ struct PicBoard {
 /// The range-and-bearing board of a robot (e-RandB), on its I2C bus.
 struct RabBoard {
     std::filesystem::path firmware;
-    double crystal_ppm = 0.0;     ///< error of the 4 MHz crystal, + is fast
-    double adc_noise = 1.0;       ///< counts, standard deviation
-    std::filesystem::path nvm{};  ///< as of the main board
+    double crystal_ppm = 0.0;                    ///< error of the 4 MHz crystal, + is fast
+    double adc_noise = rab::RabSpec::kAdcNoise;  ///< counts, standard deviation
+    std::filesystem::path nvm{};                 ///< as of the main board
 };
 
 /// What a Linux board is late with, s. All zero: nothing. Only `oversleep` may be below 0.
@@ -138,13 +141,13 @@ struct TamBoard {
     std::filesystem::path firmware;       ///< ELF or HEX; empty: the project's own, as the build made it
     std::filesystem::path boot_loader{};  ///< empty: none
     double resonator_ppm = 0.0;           ///< error of the 16 MHz resonator, + is fast
-    double adc_noise = 0.5;               ///< counts, standard deviation
-    int network = 3;                      ///< DIP switches, 0..3
-    double battery = 3.7;                 ///< V
-    std::string console{};                ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
-    double console_baud = 57600.0;        ///< of what is plugged in
-    double start = 0.0;                   ///< s: switched on
-    std::vector<double> resets{};         ///< s: the reset button is pressed, rising, after `start`
+    double adc_noise = tam::TamSpec::kAdcNoise;  ///< counts, standard deviation
+    int network = tam::TamSpec::kNetwork;        ///< DIP switches, 0..3
+    double battery = tam::TamSpec::kBattery;     ///< V
+    std::string console{};          ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
+    double console_baud = 57600.0;  ///< of what is plugged in
+    double start = 0.0;             ///< s: switched on
+    std::vector<double> resets{};   ///< s: the reset button is pressed, rising, after `start`
     XBeeModule xbee{};
 };
 

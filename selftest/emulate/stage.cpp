@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "gap/data/written.h"
-#include "run/plan/setup.h"
 #include "run/run_scenario.h"
+#include "run/setup.h"
 #include "scenarios/reader/world_tables.h"
 
 #include <fmt/format.h>

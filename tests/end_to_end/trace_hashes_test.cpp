@@ -4,7 +4,7 @@
 
 #include "cosim/conductor.h"
 #include "run/factory/node_factory.h"
-#include "run/plan/setup.h"
+#include "run/setup.h"
 #include "tests/end_to_end/load.h"
 #include "tests/end_to_end/workbench.h"
 
@@ -95,7 +95,8 @@ std::string chopped(const Known& known, bool in_process, unsigned threads, std::
     options.seed = setup.scenario.seed;
     options.node_command = {PUCKLOOP_PROGRAM};
     options.chop_seed = seed;
-    cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, tools::make_node);
+    cosim::Conductor conductor(tools::node_specs(setup), setup.links, setup.scenario.faults, options,
+                               tools::make_described);
     const cosim::Outcome outcome = conductor.run();
     INFO(outcome.text);
     CHECK(outcome.success);

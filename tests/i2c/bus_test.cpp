@@ -1,6 +1,7 @@
 // The I2C bus: phase timing, absent devices, registers, arbitration, waiting, boards behind a port.
 
 #include "base/error.h"
+#include "base/fields/json.h"
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/i2c_devices/signals.h"
 #include "physics/description/channels.h"
@@ -270,10 +271,13 @@ TEST_CASE("the log has first transfers, absent devices, lost buses and stretches
 TEST_CASE("descriptions of a bus are checked") {
     CHECK_THROWS_AS(make_bus_node(BusSpec{.hertz = 10}), InputError);
     CHECK_THROWS_AS(make_bus_node(BusSpec{.boards = {{"x", 0x78}}}), InputError);
-    CHECK_THROWS_AS(make_bus_node(std::string_view("{\"hertz\":\"fast\"}")), InputError);
-    CHECK(
-        make_bus_node(std::string_view(R"({"kind":"i2c_bus","name":"e1.i2c","rgb_turret":false})"))->name() ==
-        "e1.i2c");
+    BusSpec spec;
+    CHECK_THROWS_WITH(from_value(spec, parse_json(R"({"hertz":"fast"})"), "i2c_bus"),
+                      Catch::StartsWith("i2c_bus.hertz: has the wrong type"));
+    CHECK_THROWS_WITH(from_value(spec, parse_json(R"({"hertz":10})"), "i2c_bus"),
+                      "i2c_bus.hertz: must be 1000 to 3.4e+06 Hz");
+    from_value(spec, parse_json(R"({"name":"e1.i2c","rgb_turret":false})"), "i2c_bus");
+    CHECK(make_bus_node(spec)->name() == "e1.i2c");
 }
 
 TEST_CASE("the world publishes what the ground sensor listens to") {

@@ -1,6 +1,7 @@
 // The medium as a node: times, EOTs, grants cut anyhow, frames as they were on the air.
 
 #include "base/error.h"
+#include "base/fields/json.h"
 #include "physics/ir/ir_node.h"
 #include "physics/node/world_node.h"
 #include "physics/world/pose_signals.h"
@@ -363,5 +364,6 @@ TEST_CASE("the world publishes to the medium where things are, only when a board
         robot.rab = false;
     CHECK(WorldNode(world).ports().size() == 8);
     CHECK_THROWS_AS(IrNode(world, {}), InputError);
-    CHECK_THROWS_AS(make_ir_node("{}"), InputError);
+    IrSpec spec;
+    CHECK_THROWS_WITH(from_value(spec, parse_json("{}"), "ir"), "ir: has no world");
 }

@@ -1,7 +1,7 @@
 // From a scenario and the command line to nodes and links.
 
 #include "base/error.h"
-#include "run/plan/setup.h"
+#include "run/setup.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -59,10 +59,15 @@ class Scene {
     std::filesystem::path path_;
 };
 
-json node(const RunSetup& setup, const std::string& name) {
+/// What its process gets.
+json described(const RunSetup& setup, const std::string& name) {
     for (const auto& spec : setup.nodes)
-        if (spec.name == name) return json::parse(spec.json);
+        if (spec.name == name) return json::parse(encode(spec.what));
     return nullptr;
+}
+
+json node(const RunSetup& setup, const std::string& name) {
+    return described(setup, name).at("node");
 }
 
 std::string link(const RunSetup& setup, const std::string& name) {
@@ -77,11 +82,11 @@ TEST_CASE("a range-and-bearing board hangs on its robot's bus and in the air") {
     const Scene scene(kTwoRobots);
     const RunSetup setup = set_up(scene.request);
     const json rab = node(setup, "left.rab");
-    CHECK(rab.at("kind") == "rab");
+    CHECK(described(setup, "left.rab").at("kind") == "rab");
     CHECK(rab.at("crystal_ppm").get<double>() == Approx(30.0));
     CHECK(rab.at("i2c_hertz") == 400e3);
     CHECK(std::filesystem::path(rab.at("firmware").get<std::string>()).is_absolute());
-    CHECK(node(setup, "left.i2c").at("boards") == json::parse(R"([{"name":"rab"}])"));
+    CHECK(node(setup, "left.i2c").at("boards") == json::parse(R"([{"name":"rab","prompt":false}])"));
     CHECK(link(setup, "left.i2c.rab") == "left.rab.i2c left.i2c.rab");
     CHECK(link(setup, "right.ir") == "right.rab.ir ir.right.ir");
     CHECK(link(setup, "left.i2c.linux") == "left.linux.i2c left.i2c.linux");

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "run/factory/node_factory.h"
 #include "run/factory/preflight.h"
-#include "run/plan/setup.h"
+#include "run/setup.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 using namespace puckloop;
 using nlohmann::json;
@@ -27,10 +28,14 @@ tools::RunRequest request_of(const std::string& more) {
     return request;
 }
 
-json node(const tools::RunSetup& setup, const std::string& name) {
-    for (const auto& spec : setup.nodes)
-        if (spec.name == name) return json::parse(spec.json);
-    return nullptr;
+const tools::NodeDescription& node(const tools::RunSetup& setup, const std::string& name) {
+    for (const auto& one : setup.nodes)
+        if (one.name == name) return one.what;
+    throw std::out_of_range(name);
+}
+
+const tam::TamSpec& tam_of(const tools::RunSetup& setup) {
+    return std::get<tam::TamSpec>(node(setup, "tam0.avr").kind);
 }
 
 }  // namespace
@@ -39,17 +44,18 @@ TEST_CASE("a TAM is a node with a link to the world") {
     tools::RunRequest request = request_of("network = 1\nstart = \"2 s\"\n");
     request.firmware = {"tam0=/x/y.elf"};
     const tools::RunSetup setup = tools::set_up(request);
-    const json tam = node(setup, "tam0.avr");
-    CHECK(tam.at("firmware") == "/x/y.elf");
-    CHECK(tam.at("network") == 1);
-    CHECK(tam.at("start_s") == 2.0);
-    CHECK(node(setup, "world").at("world").at("booths").at(0).at("signals").contains("barrier_back"));
+    const tam::TamSpec& tam = tam_of(setup);
+    CHECK(tam.firmware == "/x/y.elf");
+    CHECK(tam.network == 1);
+    CHECK(tam.start == 2.0);
+    const auto& world = std::get<tools::WorldSpec>(node(setup, "world").kind).world;
+    CHECK(world.booths.at(0).signals.contains("barrier_back"));
     bool linked = false;
     for (const auto& link : setup.links)
         linked |= link.a.node == "tam0.avr" && link.a.port == "world" && link.b.port == "tam0";
     CHECK(linked);
     request.firmware = {"tam=/x/z.elf"};
-    CHECK(node(tools::set_up(request), "tam0.avr").at("firmware") == "/x/z.elf");
+    CHECK(tam_of(tools::set_up(request)).firmware == "/x/z.elf");
     request.firmware = {"tam1=/x/z.elf"};
     CHECK_THROWS_WITH(tools::set_up(request), Catch::Contains("no board 'tam1' (expected one of tam0,"));
 }
@@ -59,7 +65,8 @@ TEST_CASE("the console takes what is plugged in, and a live end only in real tim
     request.firmware = {"tam=/x/y.elf"};
     CHECK_THROWS_WITH(tools::set_up(request), Catch::Contains("tam0.console: 'pty' has a clock of its own"));
     request.realtime = true;
-    CHECK(node(tools::set_up(request), "tam0.console").at("baud") == 57600.0);
+    const tools::RunSetup setup = tools::set_up(request);
+    CHECK(std::get<tools::OutsideSpec>(node(setup, "tam0.console").kind).baud == 57600.0);
 }
 
 TEST_CASE("an image that is not for the chip is refused before the run") {
@@ -85,9 +92,7 @@ TEST_CASE("a boot loader lies below the firmware, whose first bytes it does not 
     request.firmware = {"tam0=" + firmware};
     const tools::RunSetup setup = tools::set_up(request);
     CHECK_NOTHROW(tools::check_files(setup));
-    json spec = node(setup, "tam0.avr");
-    spec.erase("log");
-    const auto board = tools::make_board(spec);
+    const auto board = tools::make_board(tools::without_files(node(setup, "tam0.avr")));
     std::vector<cosim::Message> sent;
     board->advance(cosim::kMillisecond, {}, sent);
     REQUIRE(sent.size() == 1);  // the module's reset

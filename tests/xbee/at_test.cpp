@@ -1,5 +1,6 @@
 // AT commands: reading, setting, queueing, keeping, refusing.
 
+#include "base/fields/json.h"
 #include "host.h"
 
 #include "base/error.h"
@@ -177,6 +178,8 @@ TEST_CASE("what no module can be set to is refused when it is made") {
     CHECK_THROWS_WITH(Host(options), Catch::Contains("no AT parameter XX"));
     options = escaped("");
     CHECK_THROWS_AS(Host(options), InputError);
-    CHECK_THROWS_AS(make_module_node("{"), InputError);
-    CHECK_THROWS_AS(make_module_node(R"({"address": "hello"})"), InputError);
+    ModuleSpec spec;
+    CHECK_THROWS_WITH(from_value(spec, parse_json(R"({"address": "hello"})"), "xbee"),
+                      "xbee.address: bad address (expected 16 hex digits)");
+    CHECK_THROWS_WITH(from_value(spec, parse_json(R"({"adress": "0"})"), "xbee"), "xbee.adress: unknown key");
 }

@@ -1,6 +1,7 @@
 // Modules and medium under the conductor: four networks side by side, and the same whatever the grants.
 
 #include "base/error.h"
+#include "base/fields/json.h"
 #include "cosim/conductor.h"
 #include "emu/radio/ether_node.h"
 #include "emu/xbee/module_node.h"
@@ -84,12 +85,11 @@ World four_networks() {
         const std::string name = fmt::format("m{}", i), host = fmt::format("host{}", i);
         const json parameters{
             {"AP", 1}, {"CA", 58}, {"NT", 0x20}, {"ID", 0x1B2 + network % 2}, {"CH", 12 + network / 2}};
-        world.nodes.push_back({name, json{{"kind", "xbee"},
-                                          {"name", name},
-                                          {"address", fmt::format("0013A200400000{:02X}", i)},
-                                          {"node_identifier", fmt::format("N{}{}", network, i % kEach)},
-                                          {"parameters", parameters}}
-                                         .dump()});
+        const json module{{"name", name},
+                          {"address", fmt::format("0013A200400000{:02X}", i)},
+                          {"node_identifier", fmt::format("N{}{}", network, i % kEach)},
+                          {"parameters", parameters}};
+        world.nodes.push_back({name, json{{"kind", "xbee"}, {"node", module}}.dump()});
         world.nodes.push_back({host, json{{"kind", "host"}, {"name", host}, {"at", 200 + 70 * i}}.dump()});
         world.links.push_back({name, {host, "uart"}, {name, "uart"}, 9600.0});
         cosim::LinkSpec air{name + ".radio", {name, "radio"}, {"ether", name}};
@@ -97,14 +97,23 @@ World four_networks() {
         world.links.push_back(air);
         stations.push_back({{"name", name}, {"at", {0.5 * (i % kEach), 0.4 * network, 0.0}}});
     }
-    world.nodes.push_back({"ether", json{{"kind", "ether"}, {"stations", stations}}.dump()});
+    world.nodes.push_back({"ether", json{{"kind", "ether"}, {"node", {{"stations", stations}}}}.dump()});
     return world;
 }
 
 std::unique_ptr<cosim::Node> make(const std::string& text) {
     const json spec = json::parse(text);
-    if (spec["kind"] == "xbee") return xbee::make_module_node(text);
-    if (spec["kind"] == "ether") return radio::make_ether_node(text);
+    const JsonValue fields = parse_json(spec.value("node", json()).dump());
+    if (spec["kind"] == "xbee") {
+        xbee::ModuleSpec module;
+        from_value(module, fields, "xbee");
+        return std::make_unique<xbee::ModuleNode>(module.module, module.pins);
+    }
+    if (spec["kind"] == "ether") {
+        radio::EtherSpec ether;
+        from_value(ether, fields, "ether");
+        return std::make_unique<radio::EtherNode>(ether);
+    }
     return std::make_unique<Asking>(spec["name"], spec["at"].get<int>() * cosim::kMillisecond);
 }
 

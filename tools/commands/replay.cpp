@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "replay/dump.h"
 #include "run/factory/node_factory.h"
-#include "run/plan/setup.h"
 #include "run/run_scenario.h"
+#include "run/setup.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
@@ -37,9 +37,9 @@ struct Options {
     bool list_registers = false;
 };
 
-const cosim::NodeSpec& find_node(const RunSetup& setup, const std::string& name) {
+const PlannedNode& find_node(const RunSetup& setup, const std::string& name) {
     std::vector<std::string> names;
-    for (const cosim::NodeSpec& node : setup.nodes) {
+    for (const PlannedNode& node : setup.nodes) {
         if (node.name == name) return node;
         names.push_back(node.name);
     }
@@ -134,11 +134,10 @@ int run(Options& options) {
     const RunSetup setup = set_up(request);
     const nlohmann::json report = report_of(options.folder);
     check_origin(report, file, setup);
-    const cosim::NodeSpec& spec = find_node(setup, options.node);
+    const NodeDescription& description = find_node(setup, options.node).what;
     std::filesystem::create_directories(setup.out);
     make_work_folders(setup);
-    const auto node = make_node(spec.json);
-    const nlohmann::json description = nlohmann::json::parse(spec.json);
+    const auto node = make_node(description);
     if (options.list_registers) {
         fmt::print("{}", list_of(view_of(description, *node)));
         return 0;

@@ -3,7 +3,7 @@
 #include "selftest/emulate/record.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "run/plan/program_path.h"
+#include "run/files/program_path.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
