@@ -81,7 +81,7 @@ struct Signal {
 };
 
 /// A frame of the 2.4 GHz radio (IEEE 802.15.4 O-QPSK: 250 kbit/s). What its octets mean is the radio's own
-/// (protocols/digimesh_frame.h for the XBee mesh). A module hands it to the medium stamped when it wants to
+/// (protocols/mesh_frame.h for the XBee mesh). A module hands it to the medium stamped when it wants to
 /// transmit; the medium hands it on stamped when it ends.
 struct RadioFrame {
     Time start = 0;            ///< the preamble begins

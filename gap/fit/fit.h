@@ -8,7 +8,7 @@
 
 namespace puckloop::gap {
 
-/// A model parameter that a fit may change. Weak prior about the neutral value (prior.h).
+/// A model parameter that a fit may change. Weak prior about the neutral value (objective.h).
 struct Freed {
     std::size_t index = 0;  ///< in Model::parameters()
     double low = 0.0, high = 0.0, prior_sd = 1.0, centre = 0.0;

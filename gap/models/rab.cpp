@@ -285,7 +285,7 @@ class RabModel final : public ModelOf<Numbers> {
         const std::size_t n = observables_[*bearing_].y.size();
         const double other = now.multipath;
         p.mean.assign(n, now.bearing_offset);
-        // The simulator's reflections turn by whole receivers, a third of them by none (physics/ir/ir_fate).
+        // The simulator's reflections turn by whole receivers, a third of them by none (physics/ir/burst_outcomes).
         p.lapse.assign(other > 0 ? n : 0, ring_ ? kTurned * other : other);
         p.lapse_scale.assign(other > 0 ? n : 0, ring_ ? kWholeTurn : kTurn);
         if (ring_) {

@@ -1,6 +1,6 @@
 #pragma once
 // What one range-and-bearing board reads of another's frame, ring and medium included: light by the
-// simulator's own coupling (physics/ir_coupling), strength and bearing by the formulas of the board's
+// simulator's own coupling (physics/ir/ir_coupling), strength and bearing by the formulas of the board's
 // firmware (protocols/rab_reading, here without its rounding).
 //
 // Deviations: 1. boards stand alone; nothing shades or mirrors. 2. Spreads of parts count as noise of single

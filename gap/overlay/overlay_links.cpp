@@ -17,7 +17,7 @@ namespace puckloop::gap {
 namespace {
 
 /// s from a command's row to the wheels that a run has by itself: a record on the line and the firmware's
-/// loop (as gap/emulate records it). Measured latencies hold it, too; it must not be there twice.
+/// loop (as selftest/emulate records it). Measured latencies hold it, too; it must not be there twice.
 constexpr double kOwnCommandLatency = 0.0033;
 
 class LinksOverlay {

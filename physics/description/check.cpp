@@ -21,9 +21,10 @@ namespace {
 constexpr double kFarthest = 1000.0;      // m: nothing is further out or bigger
 constexpr double kMostReflective = 10.0;  // foil is 1.5
 constexpr double kBrightest = 100.0;
-constexpr double kLoudest = 1e5;                 // counts: full scale 2 m away
-constexpr double kLongest = 1e9;                 // s
-constexpr double kLowest = 20, kHighest = 4000;  // Hz: what microphones hear evenly here (sound_waves.h)
+constexpr double kLoudest = 1e5;  // counts: full scale 2 m away
+constexpr double kLongest = 1e9;  // s
+constexpr double kLowest = 20,
+                 kHighest = 4000;  // Hz: what microphones hear evenly here (physics/sensors/sound_waves.h)
 
 class Checker {
   public:

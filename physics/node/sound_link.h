@@ -1,6 +1,6 @@
 #pragma once
 // Sound through the world: what robots' speakers do comes in with their signals, what loudspeakers that play
-// waves do is known (speaker_wave.h); the waves at every robot's
+// waves do is known (physics/sensors/speaker_wave.h); the waves at every robot's
 // three microphones go out, 16 samples a step, while there is anything to hear.
 
 #include "cosim/core/message.h"

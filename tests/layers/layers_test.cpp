@@ -18,6 +18,7 @@ namespace {
 /// From the bottom to the top. A file belongs to the longest entry that begins its path.
 const std::vector<std::string> kFolders = {
     "base",
+    "base/fields",
     "cosim/core",
     "protocols",
     "cosim/faults",
@@ -61,6 +62,41 @@ const std::vector<std::string> kFolders = {
     "physics/node",
     "physics/render",
     "scenarios",
+    "linuxboard/control",
+    "linuxboard/coordinator",
+    "linuxboard/record",
+    "linuxboard/shim/wire",
+    "linuxboard/shim",
+    "linuxboard",
+    "debug",
+    "ends",
+    "traces",
+    "run/files",
+    "run/description",
+    "run/stats",
+    "run/states",
+    "run/control",
+    "run/factory",
+    "run/nodes",
+    "run/plan",
+    "run/snapshots",
+    "run/report",
+    "run/debugging",
+    "run",
+    "bench/bus",
+    "bench/targets",
+    "bench/upload",
+    "bench",
+    "replay",
+    "campaigns",
+    "reproductions",
+    "benchmark",
+    "gap",
+    "selftest",
+    "selftest/grammar",
+    "selftest/emulate",
+    "tools/cli",
+    "tools",
 };
 
 /// Includes that go up, each with its reason. One that is no longer there has to leave this list.
@@ -81,7 +117,7 @@ const std::set<std::string> kUpward = {
     "emu/dspic/waits/judge.h emu/dspic/chip/layout.h",
 };
 
-/// Place of a file's folder in the list; -1 where it has none (tools, gap, linuxboard: no order is asked).
+/// Place of a file's folder in the list; -1 where it has none.
 int rank_of(std::string_view path) {
     int best = -1;
     std::size_t longest = 0;
@@ -129,7 +165,9 @@ TEST_CASE("folders depend downward only") {
     const fs::path source = PUCKLOOP_SOURCE;
     std::set<std::string> upward;
     int files = 0;
-    for (const char* top : {"base", "protocols", "cosim", "emu", "physics", "scenarios"}) {
+    for (const char* top : {"base", "protocols", "cosim", "emu", "physics", "scenarios", "linuxboard",
+                            "debug", "ends", "traces", "run", "bench", "replay", "campaigns", "reproductions",
+                            "benchmark", "selftest", "tools"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source / top)) {
             const std::string extension = entry.path().extension().string();
             if (extension != ".h" && extension != ".cpp") continue;
@@ -139,8 +177,6 @@ TEST_CASE("folders depend downward only") {
             REQUIRE(rank >= 0);
             ++files;
             for (const std::string& included : includes_of(entry.path())) {
-                CHECK_FALSE(included.starts_with("tools/"));
-                CHECK_FALSE(included.starts_with("gap/"));
                 CHECK_FALSE(included.starts_with("tests/"));
                 if (rank_of(included) > rank) upward.insert(path + " " + included);
             }

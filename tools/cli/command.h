@@ -70,7 +70,7 @@ class Command {
 
 /// Declares a subcommand on `app` and sets a callback that returns through `status` (0 success, 1 a run or
 /// check failed). Wrong use and bad input are thrown as InputError and become status 2 in run_program(). Each
-/// subcommand lives in a file of its own and is listed once, in commands.h.
+/// subcommand lives in a file of its own and is listed once, in tools/commands.h.
 using DeclareCommand = void (*)(Command& app, int& status);
 
 }  // namespace puckloop::tools

@@ -217,7 +217,7 @@ void perform_reset(Machine& m, ResetCause cause);
 void table_write(Machine& m, std::uint32_t address, bool high, bool byte, std::uint16_t value);
 void hook_nvm(Machine& m);
 void reset_nvm(Machine& m, ResetCause cause, std::uint16_t nvmcon_before);
-// watchdog.cpp
+// power.cpp
 void hook_power(Machine& m);
 void clear_watchdog(Machine& m);
 void enter_power_save(Machine& m, PowerMode mode);

@@ -1,6 +1,6 @@
 #pragma once
 // The controls of a camera (VIDIOC_QUERYCTRL and its kin). Exposure is fixed and has none: the driver of the
-// robot's camera refuses it too (ARGoS, epuck_image_grabber.cpp).
+// robot's camera refuses it too (ARGoS, epuck_image_grabber).
 
 #include "linuxboard/shim/devices/scenery.h"
 
