@@ -69,6 +69,7 @@ std::vector<std::string> CanBusNode::warnings() const {
 }
 
 std::string CanBusNode::finish() {
+    wire_.faults().conclude(now_);
     nlohmann::ordered_json json{{"frames", frames_}};
     nlohmann::ordered_json& list = json["controllers"];
     for (std::size_t i = 0; i < controllers_.size(); ++i) {

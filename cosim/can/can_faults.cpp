@@ -90,6 +90,14 @@ void CanFaults::felt_cut(Time now, std::size_t controller) {
     }
 }
 
+void CanFaults::conclude(Time now) {
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+        const Time begin = carried_[i].trigger.begin();
+        if (faults_[i].kind == Kind::Dominant && begin < now)
+            felt(i, begin, "the wire is dominant and no controller takes part");
+    }
+}
+
 bool CanFaults::meant(const Fault& fault, std::size_t sender, const protocols::CanFrame& frame) const {
     return (!fault.from || *fault.from == sender) && (!fault.id || *fault.id == frame.id);
 }

@@ -40,6 +40,8 @@ class CanFaults {
     /// `receiver` took the frame, and its program is not informed.
     bool drops(std::size_t sender, std::size_t receiver, const protocols::CanFrame& frame, Time start);
 
+    /// The run is over at `now`: a wire held dominant counts, whether a controller took part or not.
+    void conclude(Time now);
     const std::vector<CarriedFault>& carried() const { return carried_; }
 
   private:

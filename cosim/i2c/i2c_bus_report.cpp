@@ -54,6 +54,7 @@ std::vector<std::string> I2cBusNode::warnings() const {
 }
 
 std::string I2cBusNode::finish() {
+    faults_.conclude(now_);
     log_.end(now_, fmt::format("{} transfers, {} bytes written, {} read, {} not acknowledged, bus lost {}",
                                counters_.transfers, counters_.bytes_written, counters_.bytes_read,
                                counters_.not_acknowledged, times_text(counters_.lost)));

@@ -105,13 +105,17 @@ bool I2cFaults::meant(const Fault& fault, PortIndex master, const I2cPhase& phas
 }
 
 I2cDamage I2cFaults::strike(PortIndex master, const I2cPhase& phase) {
+    note_quiet(phase.start, false);
     track(phase);
     I2cDamage damage;
     damage.phase = phase;
     for (std::size_t i = 0; i < faults_.size(); ++i) {
-        if (meant(faults_[i], master, phase) && carried_[i].trigger.fires(phase.start))
-            harm(i, master, phase, damage);
-        if (faults_[i].low_from < kNever && pull(faults_[i], phase, damage)) pulled(i, master, phase);
+        const bool struck = meant(faults_[i], master, phase) && carried_[i].trigger.fires(phase.start);
+        if (struck) harm(i, master, phase, damage);
+        if (faults_[i].low_from < kNever && pull(faults_[i], phase, damage))
+            pulled(i, master, phase);
+        else if (struck && faults_[i].low_from == phase.start)
+            pulled(i, master, phase, " between two samples of the line");
     }
     const auto deaf = deaf_.find(address_);
     if (phase.kind == I2cPhaseKind::Start && deaf != deaf_.end() && phase.start < deaf->second)

@@ -50,6 +50,8 @@ class I2cFaults {
     Time next_incomplete() const;
     std::optional<I2cIncomplete> take_incomplete(Time now);
 
+    /// The run is over at `now`: what was low on a bus at rest counts too.
+    void conclude(Time now) { note_quiet(now, true); }
     /// With what became of them.
     const std::vector<CarriedFault>& carried() const { return carried_; }
 
@@ -80,7 +82,8 @@ class I2cFaults {
     void harm(std::size_t index, PortIndex master, const I2cPhase& phase, I2cDamage& damage);
     /// What a line that is low during [low_from, low_until) does to the byte; true if it does anything.
     bool pull(const Fault& fault, const I2cPhase& phase, I2cDamage& damage) const;
-    void pulled(std::size_t index, PortIndex master, const I2cPhase& phase);
+    void pulled(std::size_t index, PortIndex master, const I2cPhase& phase, const std::string& how = {});
+    void note_quiet(Time now, bool over);
     int lose_at_bit(std::size_t index, const I2cPhase& phase, I2cDamage& damage);
     void note(std::size_t index, PortIndex master, const I2cPhase& phase, int bit = -1,
               const std::string& more = {});

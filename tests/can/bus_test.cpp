@@ -153,6 +153,31 @@ TEST_CASE("a frame crosses the bus, its sender and the others hear of it at the 
     }
 }
 
+TEST_CASE("a wire held dominant while no controller takes part: the evidence states it once") {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        CAPTURE(seed);
+        RandomStream random(seed, "bus");
+        const Time begin = (1 + static_cast<Time>(random.below(100))) * kBit;
+        std::vector<CarriedFault> faults;
+        for (const Time from : {begin, 500 * kBit}) {
+            FaultSpec spec;
+            spec.link = spec.node = "can";
+            spec.kind = "stuck";
+            spec.set("level", std::string("dominant"));
+            spec.begin = from;
+            spec.end = from + 50 * kBit;
+            faults.push_back(tests::fault_of(spec, static_cast<int>(faults.size())));
+        }
+        CanBusNode bus(three(faults));
+        CHECK(run(bus, {}, 400 * kBit, random).empty());
+        const auto found = nlohmann::json::parse(bus.finish()).at("faults");
+        CHECK(found[0]["fired"] == 1);
+        CHECK(found[0]["firings"][0][0] == begin);
+        CHECK(found[0]["firings"][0].back() == "the wire is dominant and no controller takes part");
+        CHECK(found[1]["fired"] == 0);
+    }
+}
+
 TEST_CASE("a frame that comes too late is sent behind, one withdrawn is not, the watcher is woken") {
     RandomStream random(2, "bus");
     CanBusNode bus(three());

@@ -236,6 +236,57 @@ TEST_CASE("SDA or SCL low on an idle bus: Linux waits or gives up, the dsPIC see
     }
 }
 
+TEST_CASE("SDA or SCL low on a bus that nobody uses meanwhile: the evidence states it") {
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        for (const char* const kind : {"sda", "scl"}) {
+            INFO("seed " << seed << " " << kind);
+            Draw draw(seed);
+            SharedBus bus;
+            bus.boards.push_back({});
+            const Time begin = draw.time(20 * kMillisecond, 40 * kMillisecond);
+            const Time low = draw.time(kMicrosecond, 20 * kMillisecond);
+            if (seed % 2 == 0) bus.linux_board = {{kMillisecond, writing(0x20, {1, 2})}};
+            if (seed % 3 == 0) bus.pic = {{begin + low + kMillisecond, writing(0x20, {3, 4})}};
+            // Over before, beyond the end, and one that the run never comes to.
+            bus.faults = {fault(kind), fault(kind), fault(kind)};
+            bus.faults[0].begin = begin;
+            bus.faults[0].set("time", seconds(low));
+            bus.faults[1].begin = 90 * kMillisecond;
+            bus.faults[1].set("time", 1.0);
+            bus.faults[2].begin = bus.duration;
+            bus.faults[2].set("time", seconds(low));
+            bus.run();
+            const auto found = evidence(bus);
+            CHECK(found[0]["fired"] == 1);
+            CHECK(found[0]["firings"][0][0] == begin);
+            const auto text = found[0]["firings"][0].back().get<std::string>();
+            CHECK(text.starts_with(std::string(kind) + " low from "));
+            CHECK(text.ends_with(" on a bus at rest"));
+            CHECK(found[1]["fired"] == 1);
+            CHECK(found[1]["firings"][0][0] == 90 * kMillisecond);
+            CHECK(found[2]["fired"] == 0);
+            for (const auto& result : bus.linux_results)
+                CHECK(result.error == 0);
+            for (const auto& result : bus.pic_results)
+                CHECK(result.error == 0);
+        }
+    }
+}
+
+TEST_CASE("SDA low for less than half a clock of a byte: no bit is spoiled, and the evidence states when") {
+    SharedBus bus;
+    bus.boards.push_back({});
+    bus.linux_board = {{kMillisecond, writing(0x20, {1, '\x7F'})}};
+    bus.faults = {fault("sda", {.position = 2})};
+    bus.faults[0].set("time", seconds(kClock / 4));
+    bus.run();
+    CHECK(bus.linux_results.at(0).error == 0);
+    CHECK(bus.boards[0].seen.at(1) == 0x7F);
+    const auto found = evidence(bus);
+    CHECK(found[0]["fired"] == 1);
+    CHECK(found[0]["firings"][0].back().get<std::string>().ends_with(" between two samples of the line"));
+}
+
 TEST_CASE("SDA low in a transfer: a 1 loses the bus, a 0 passes, bytes read are zero") {
     SharedBus bus;
     bus.boards.push_back({.address = 0x20, .fill = 0xFF});
