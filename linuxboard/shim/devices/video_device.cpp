@@ -19,7 +19,8 @@ using cosim::kSecond;
 using cosim::Time;
 
 namespace {
-constexpr std::uint32_t kReadBuffer = 0;
+/// Of read(): one is filled, one waits for the next frame, one is being read.
+constexpr std::size_t kReadBuffers = 3;
 constexpr std::size_t kRgbBytes = 3;
 
 bool is_capture(std::uint32_t type) {
@@ -223,9 +224,11 @@ std::optional<std::uint64_t> VideoDevice::map(std::uint32_t offset, std::uint32_
 void VideoDevice::begin_reading(int handle, Time now) {
     owner_ = handle;
     reading_ = true;
-    buffers_.assign(1, {});
-    buffers_[kReadBuffer].state = Buffer::State::Queued;
-    queued_.push_back(kReadBuffer);
+    buffers_.assign(kReadBuffers, {});
+    for (std::size_t index = 0; index < buffers_.size(); ++index) {
+        buffers_[index].state = Buffer::State::Queued;
+        queued_.push_back(index);
+    }
     read_from_ = 0;
     start(now);
 }
@@ -236,14 +239,15 @@ std::optional<VideoDevice::ReadResult> VideoDevice::read(int handle, std::uint32
     if (!reading_) begin_reading(handle, now);
     if (done_.empty()) return nonblocking ? std::optional(ReadResult{EAGAIN}) : std::nullopt;
     ReadResult result;
-    result.place = read_from_;
+    const std::size_t index = done_.front();
+    result.place = index * wire::kVideoBufferSize + read_from_;
     result.bytes = std::min(most, frame_bytes() - read_from_);
     read_from_ += result.bytes;
     if (read_from_ == frame_bytes()) {  // the next read() is of the next frame
         read_from_ = 0;
         done_.pop_front();
-        buffers_[kReadBuffer].state = Buffer::State::Queued;
-        queued_.push_back(kReadBuffer);
+        buffers_[index].state = Buffer::State::Queued;
+        queued_.push_back(index);
     }
     return result;
 }

@@ -4,7 +4,8 @@
 // At the beginning of each frame the next buffer of the queue is taken and the picture of that instant put
 // into it; one frame period later (read-out) it is done and can be taken out. A frame that finds no buffer is
 // lost, its number missing among the sequence numbers. Time stamps are CLOCK_MONOTONIC at the end of the
-// frame. Buffers lie in memory that the program maps; read() uses the first of them.
+// frame. Buffers lie in memory that the program maps; read() uses the first three of them, so that it
+// delivers every frame to a program that keeps up.
 //
 // Deviations: 1. All of a picture is of one instant (no rolling shutter). 2. Only one format at a time, and
 // only MMAP buffers, no dma-buf (EXPBUF), no events. 3. Buffers given back by VIDIOC_REQBUFS while they are

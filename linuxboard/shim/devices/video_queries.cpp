@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint32_t kCapabilities =
     V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING | V4L2_CAP_READWRITE | V4L2_CAP_EXT_PIX_FORMAT;
 constexpr std::uint32_t kKernel = 5 << 16 | 10 << 8;  // the driver's version: that of its kernel
-constexpr std::uint32_t kReadBuffers = 1;
+constexpr std::uint32_t kReadBuffers = 3;
 
 template <std::size_t Size>
 void put_text(__u8 (&field)[Size], const std::string& text) {

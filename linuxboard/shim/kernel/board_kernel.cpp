@@ -48,7 +48,7 @@ DeviceKind kind_for(Op op) {
 /// Of the messages of one transfer.
 std::vector<std::uint16_t> addresses_of(std::uint32_t count, std::string_view data) {
     std::vector<std::uint16_t> addresses;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t i = 0; i < count && !data.empty(); ++i) {
         const auto segment = read_object<wire::I2cSegment>(data);
         addresses.push_back(segment.address);
         if ((segment.flags & I2C_M_RD) == 0)
@@ -201,8 +201,14 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
     case Op::Drain:
         return tty_.drained(now) || tty_.hung_up() ? done(0) : false;
     case Op::Break:
-        tty_.send_break(now, request.b * cosim::kMicrosecond);
-        return done(0);
+        // As the tty layer: what was written goes out, then the break lasts as long as the call.
+        if (waiting.progress == 0) {
+            if (!tty_.drained(now) && !tty_.hung_up()) return false;
+            tty_.send_break(now, request.b * cosim::kMicrosecond);
+            waiting.progress = 1;
+            waiting.since = now;
+        }
+        return now >= waiting.since + request.b * cosim::kMicrosecond ? done(0) : false;
     case Op::InputQueue:
         return done(static_cast<std::int64_t>(tty_.input_queue()));
     case Op::OutputQueue:
@@ -304,7 +310,7 @@ void BoardKernel::submit_transfer(const Request& request, std::string_view data)
     I2cTransfer transfer;
     transfer.owner = request.thread;
     transfer.timeout = request.a * cosim::kMillisecond;
-    for (std::uint32_t i = 0; i < request.b; ++i) {
+    for (std::uint32_t i = 0; i < request.b && !data.empty(); ++i) {
         const auto segment = read_object<wire::I2cSegment>(data);
         I2cMessage message;
         message.address = segment.address;
@@ -348,6 +354,9 @@ Time BoardKernel::wake_time(const Waiting& waiting) const {
         if (settings.c_cc[VMIN] > 0 && waiting.gathered.empty()) return kNever;
         return waiting.since + settings.c_cc[VTIME] * kVtimeUnit;
     }
+    case Op::Break:
+        if (waiting.progress == 0) return tty_.drain_time();
+        return waiting.since + waiting.request.b * cosim::kMicrosecond;
     case Op::SetTermios:
     case Op::Drain:
         return tty_.drain_time();

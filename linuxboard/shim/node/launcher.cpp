@@ -45,6 +45,28 @@ constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
                     error == EMFILE ? " (a program takes 3 here; ulimit -n 4096 raises the limit)" : ""));
 }
 
+/// Under a limit of file sizes (ulimit -f) this is an error like any other, no signal.
+void resize_shared(int fd, std::uint64_t size) {
+    sigset_t limit, before;
+    sigemptyset(&limit);
+    sigaddset(&limit, SIGXFSZ);
+    pthread_sigmask(SIG_BLOCK, &limit, &before);
+    const bool done = ftruncate(fd, static_cast<off_t>(size)) == 0;
+    const int error = errno;
+    const timespec at_once{};
+    while (!done && sigtimedwait(&limit, nullptr, &at_once) > 0) {
+    }
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    errno = error;
+    if (done) return;
+    if (error == EFBIG)
+        throw RunError(
+            fmt::format("shared memory of a program: {} bytes are more than the limit of file sizes "
+                        "allows (ulimit -f)",
+                        size));
+    fail("shared memory");
+}
+
 std::string shim_file(const LinuxSpec& spec) {
     std::string file = spec.shim;
     if (file.empty()) {
@@ -163,8 +185,15 @@ Launcher::~Launcher() {
 }
 
 void Launcher::prepare_page() {
-    page_fd_ = memfd_create("puckloop-shim", MFD_CLOEXEC);
-    if (page_fd_ < 0 || ftruncate(page_fd_, wire::kSharedSize) != 0) fail("shared memory");
+    page_fd_ = memfd_create("puckloop-shim", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    const std::uint64_t size = spec_.cameras.empty()
+                                   ? wire::kSharedSize
+                                   : wire::video_offset(static_cast<std::uint32_t>(spec_.cameras.size()));
+    if (page_fd_ < 0) fail("shared memory");
+    resize_shared(page_fd_, size);
+    // The program has the memory too: it may not take away what is mapped here.
+    if (fcntl(page_fd_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+        fail("sealing the shared memory");
     void* memory = mmap(nullptr, wire::kSharedSize, PROT_READ | PROT_WRITE, MAP_SHARED, page_fd_, 0);
     if (memory == MAP_FAILED) fail("shared memory");
     page_ = new (memory) wire::Page;
@@ -194,7 +223,6 @@ void Launcher::prepare_page() {
 void Launcher::map_video() {
     const std::uint64_t size = spec_.cameras.size() * wire::kVideoSize;
     constexpr std::uint64_t kFirst = wire::video_offset(0);
-    if (ftruncate(page_fd_, static_cast<off_t>(kFirst + size)) != 0) fail("shared memory of the cameras");
     void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, page_fd_, kFirst);
     if (memory == MAP_FAILED) fail("shared memory of the cameras");
     video_ = static_cast<char*>(memory);
@@ -211,6 +239,8 @@ std::unique_ptr<Process> Launcher::start() {
     entry.state = wire::ProcessEntry::Alive;
     entry.number = entry.group = wire::kFirstProcess;
     entry.parent = wire::kNoParent;
+    entry.computed = entry.children_computed = 0;
+    entry.faults = 0;
     page_->alive = 1;
     wire::Channel& channel = *new (wire::channel_of(*page_, 0)) wire::Channel;
     const rlim_t most = descriptor_limit();

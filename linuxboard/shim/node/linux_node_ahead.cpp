@@ -37,10 +37,11 @@ void LinuxNode::catch_up(Client& client) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const wire::Done& done = channel.done[i];
         // No call ends up to then (the reply's limit): only what was written before goes out.
-        run_devices(done.time);
+        const Time time = std::clamp(done.time, client.answered, std::max(client.answered, until_));
+        run_devices(time);
         if (done.read > 0) kernel_.was_read(done.read);
         if (done.written == 0) continue;
-        kernel_.was_written(written.substr(0, done.written), done.time);
+        kernel_.was_written(written.substr(0, done.written), time);
         written.remove_prefix(std::min<std::size_t>(done.written, written.size()));
     }
 }

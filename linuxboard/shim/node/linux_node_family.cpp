@@ -149,6 +149,8 @@ void LinuxNode::fork(Client& client) {
     made.host = 0;
     made.now = client.request.now;
     made.call_name[0] = '\0';
+    made.computed = made.children_computed = 0;
+    made.faults = 0;
     wire::Channel& channel = *new (wire::channel_of(launcher_->page(), slot)) wire::Channel;
     auto child = std::make_unique<Client>();
     child->slot = slot;
@@ -191,7 +193,7 @@ void LinuxNode::hear_child(Client& parent) {
 
 void LinuxNode::send_signal(std::uint32_t slot, int signal, Time now) {
     Client* client = client_at(slot);
-    if (client == nullptr) return;
+    if (client == nullptr || signal <= 0 || signal >= NSIG) return;
     if (signal == SIGKILL) {
         client->process->kill();
         client_ended(*client, now);
@@ -216,6 +218,8 @@ void LinuxNode::changed(const Client* by, Time now) {
 }
 
 void LinuxNode::client_ended(Client& client, Time now) {
+    // What the program's memory states may be anything.
+    now = std::clamp(now, client.answered, std::max(client.answered, until_));
     const std::uint32_t slot = client.slot;
     const bool signalled = client.end_signalled;
     client.process->kill();

@@ -144,6 +144,8 @@ bool LinuxNode::listen(Client& client, bool wait) {
         ++requests_;
         // A program that has just taken another one's place does not know the time.
         if (client.request.op == Op::Hello) client.request.now = client.answered;
+        // A program that writes where it should not may ask for anything, but not for the past.
+        client.request.now = std::max(client.request.now, client.answered);
         client.state = Client::State::Asking;
         break;
     case ProcessEvent::Ended:

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -131,8 +132,8 @@ bool Process::await_request() {
 
 bool Process::is_gone() const {
     siginfo_t ended{};
-    const bool is_child = entry_.host > 0 && waitid(P_PID, static_cast<id_t>(entry_.host), &ended,
-                                                    WEXITED | WNOHANG | WNOWAIT) == 0;
+    const bool is_child =
+        host() > 0 && waitid(P_PID, static_cast<id_t>(host()), &ended, WEXITED | WNOHANG | WNOWAIT) == 0;
     if (is_child && ended.si_pid != 0) return true;
     if (is_child && !leaving_) return false;
     pollfd entry{socket_, 0, 0};
@@ -141,8 +142,8 @@ bool Process::is_gone() const {
 
 bool Process::was_killed() const {
     siginfo_t ended{};
-    return !ended_ && entry_.host > 0 &&
-           waitid(P_PID, static_cast<id_t>(entry_.host), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+    return !ended_ && host() > 0 &&
+           waitid(P_PID, static_cast<id_t>(host()), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
            ended.si_pid != 0 && ended.si_code != CLD_EXITED;
 }
 
@@ -162,8 +163,11 @@ std::optional<ProcessEvent> Process::try_hear(double watchdog, bool wait, wire::
         }
     }
     silence_ = {};
+    if (host_ == 0) host_ = entry_.host;
     request = channel_.request;
     data.assign(channel_.request_data, std::min(channel_.request_size, wire::kMaximumData));
+    constexpr std::uint32_t kMostThreads = 0xffff;
+    request.thread &= kMostThreads;
     if (request.op == wire::Op::Exit) {
         leaving_ = true;
         channel_.turn.give(Turn::Program);
@@ -178,7 +182,7 @@ bool Process::is_silent(double watchdog) {
     if (silence_.waited < silence_.looked + slice) return false;
     silence_.looked = silence_.waited;
     // On a loaded host a program that computes may just not get the processor: its own time counts.
-    const HostState state = host_state(entry_.host);
+    const HostState state = host_state(host());
     if (silence_.computed_before < 0) silence_.computed_before = state.computed_s;
     const bool computed_long = state.computed_s - silence_.computed_before + slice >= watchdog;
     const bool slept_long = state.code != 'R' && silence_.waited >= watchdog;
@@ -197,7 +201,7 @@ void Process::await_end() {
 
 void Process::reap(bool wait) {
     if (ended_) return;
-    const pid_t reaped = entry_.host > 0 ? waitpid(entry_.host, &wait_status_, wait ? 0 : WNOHANG) : -1;
+    const pid_t reaped = host() > 0 ? waitpid(host(), &wait_status_, wait ? 0 : WNOHANG) : -1;
     if (reaped == 0) return;
     ended_ = true;
     if (reaped > 0)
@@ -208,9 +212,9 @@ void Process::reap(bool wait) {
 
 void Process::kill() {
     if (ended_) return;
-    if (entry_.host > 0) {
-        ::kill(-entry_.host, SIGKILL);
-        ::kill(entry_.host, SIGKILL);
+    if (host() > 0) {
+        ::kill(-host(), SIGKILL);
+        ::kill(host(), SIGKILL);
     }
     reap(true);
 }
@@ -246,8 +250,7 @@ bool Process::crashed() const {
 
 bool Process::dies_of(int signal) const {
     std::error_code none;
-    for (const auto& task :
-         std::filesystem::directory_iterator(fmt::format("/proc/{}/task", entry_.host), none)) {
+    for (const auto& task : std::filesystem::directory_iterator(fmt::format("/proc/{}/task", host()), none)) {
         std::ifstream file(task.path() / "status");
         for (std::string line; std::getline(file, line);) {
             if (!line.starts_with("SigCgt:") && !line.starts_with("SigIgn:") && !line.starts_with("SigBlk:"))
@@ -259,8 +262,33 @@ bool Process::dies_of(int signal) const {
     return true;
 }
 
+/// "program+0x1234", as the process's memory is mapped; the bare address where nothing is.
+static std::string place_in(pid_t process, std::uint64_t address) {
+    std::ifstream maps(fmt::format("/proc/{}/maps", process));
+    for (std::string line; std::getline(maps, line);) {
+        unsigned long long begin = 0, end = 0, offset = 0;
+        int name = 0;
+        if (std::sscanf(line.c_str(), "%llx-%llx %*s %llx %*s %*s %n", &begin, &end, &offset, &name) < 3)
+            continue;
+        if (address < begin || address >= end || name == 0) continue;
+        const std::string file =
+            std::filesystem::path(line.substr(static_cast<std::size_t>(name))).filename();
+        return fmt::format("{}+0x{:x}", file, address - begin + offset);
+    }
+    return fmt::format("0x{:x}", address);
+}
+
 std::string Process::describe_silence() const {
-    const char state = host_state(entry_.host).code;
+    const std::uint64_t faults = entry_.faults.load();
+    constexpr std::uint64_t kLoop = 100;
+    if (faults >= kLoop && entry_.fault_time == entry_.now.load()) {
+        const char* name = sigabbrev_np(static_cast<int>(entry_.fault_signal));
+        return fmt::format(
+            "it loops in its own handler of SIG{}, which returns to the instruction that failed: {} "
+            "times at {}, about the address 0x{:x}",
+            name != nullptr ? name : "?", faults, place_in(host(), entry_.fault_place), entry_.fault_address);
+    }
+    const char state = host_state(host()).code;
     const char* call = entry_.call_name[0] != '\0' ? entry_.call_name : "its start";
     return fmt::format("{}; last call taken over: {} by thread {}",
                        state == 'R' ? "it computes without any call that lets time pass"

@@ -63,6 +63,9 @@ class Process {
 
     int socket_;
     wire::ProcessEntry& entry_;
+    /// The host's number of it, or 0; from its first request on, whatever the program writes to its entry.
+    pid_t host() const { return host_ > 0 ? host_ : entry_.host; }
+    pid_t host_ = 0;
     bool ended_ = false;
     int wait_status_ = 0;
     std::optional<int> exit_status_;

@@ -23,15 +23,20 @@ Time absolute_deadline(clockid_t clock, const timespec& time);
 bool is_valid(const timespec& time);
 bool sleep_until(Time deadline);
 
+// processor_time.cpp
+/// Reading of a clock of processor time, in picoseconds; false if `clock` is none that there is.
+bool processor_time(clockid_t clock, Time& reading);
+bool is_processor_clock(clockid_t clock);
+
+// identity_calls.cpp
+/// The number of a thread of this process, as gettid() gives it.
+pid_t thread_number(std::uint32_t index);
+
 // file_calls.cpp: descriptors that stand for devices
 struct OpenFile;
 OpenFile* open_file(int fd);
 
-// stdio_calls.cpp
-/// Standard streams that are pipes wait in simulated time.
-void adopt_standard_streams();
-/// A stream whose calls come back here.
-FILE* open_stream(int fd, const char* mode);
+// channel.cpp
 /// A pipe or a socket: what waits for it waits for another process.
 bool is_channel(int fd);
 

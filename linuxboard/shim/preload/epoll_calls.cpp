@@ -3,13 +3,19 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/epoll.h>
+#include <sys/syscall.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
+#include <cstring>
 
 using namespace puckloop::shim;
 
@@ -67,6 +73,17 @@ int gather(int epoll_fd, const pollfd* entries, nfds_t count, epoll_event* event
     }
     return total;
 }
+/// A descriptor of the host's epoll; errno if it is another one or none.
+bool is_epoll(int fd) {
+    if (REAL(fcntl)(fd, F_GETFD) < 0) return false;
+    char path[40], target[64] = {};
+    std::snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    host_call(SYS_readlinkat, AT_FDCWD, reinterpret_cast<long>(path), reinterpret_cast<long>(target),
+              sizeof target - 1);
+    if (std::strcmp(target, "anon_inode:[eventpoll]") == 0) return true;
+    errno = EINVAL;
+    return false;
+}
 }  // namespace
 
 SHIM_EXPORT int epoll_create1(int flags) noexcept {
@@ -82,11 +99,23 @@ SHIM_EXPORT int epoll_create(int) noexcept {
 SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* event) noexcept {
     if (open_file(fd) == nullptr) return REAL(epoll_ctl)(epoll_fd, operation, fd, event);
     charge(page().charges.device);
-    return change_watch(epoll_fd, operation, fd, event);
+    epoll_event wanted{};
+    if (operation != EPOLL_CTL_DEL && !get_from_program(wanted, event)) return -1;
+    if (!is_epoll(epoll_fd)) return -1;
+    if (operation != EPOLL_CTL_ADD && operation != EPOLL_CTL_MOD && operation != EPOLL_CTL_DEL) {
+        errno = EINVAL;
+        return -1;
+    }
+    return change_watch(epoll_fd, operation, fd, &wanted);
 }
 
 SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int timeout) {
     if (!active()) return REAL(epoll_wait)(epoll_fd, events, most, timeout);
+    if (most <= 0) {
+        errno = EINVAL;
+        return -1;
+    }
+    if (!is_epoll(epoll_fd)) return -1;
     const Time deadline = timeout < 0 ? kNever : time_after(timeout * kMillisecond);
     pollfd entries[kMostWatches + 1];
     nfds_t count = 0;
@@ -100,7 +129,10 @@ SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int time
     if (deadline != kNever) left = static_cast<int>((deadline - now() + kMillisecond - 1) / kMillisecond);
     const int ready = poll(entries, count, left);
     if (ready <= 0) return ready;
-    const int devices = gather(epoll_fd, entries, count, events, most);
+    epoll_event ready_devices[kMostWatches];
+    const int devices = gather(epoll_fd, entries, count, ready_devices, std::min(most, kMostWatches));
+    if (!copy_to_program(events, ready_devices, static_cast<std::size_t>(devices) * sizeof(epoll_event)))
+        return -1;
     if (entries[0].revents == 0 || devices == most) return devices;
     const int others = REAL(epoll_wait)(epoll_fd, events + devices, most - devices, 0);
     return others < 0 && devices == 0 ? others : devices + std::max(others, 0);

@@ -2,6 +2,7 @@
 // A call on a descriptor that is no device: made at once where it cannot block, else once the host is ready.
 
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
@@ -31,6 +32,10 @@ inline bool goes_straight(int fd) {
 template <typename Call>
 ssize_t outside(int fd, short events, Call call) {
     if (!active()) return call();
+    if (is_link_descriptor(fd)) {  // none of the program's
+        errno = EBADF;
+        return -1;
+    }
     if (goes_straight(fd)) {
         charge(page().charges.device);
     } else if (!await_external(fd, events)) {

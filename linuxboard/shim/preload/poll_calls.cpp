@@ -5,6 +5,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
@@ -161,9 +162,57 @@ int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time 
 
 }  // namespace puckloop::shim
 
+namespace {
+/// poll_until() on entries of the program.
+int poll_program(pollfd* theirs, nfds_t count, Time deadline) {
+    if (count > FD_SETSIZE) {
+        errno = EINVAL;
+        return -1;
+    }
+    pollfd entries[FD_SETSIZE];
+    if (!copy_from_program(entries, theirs, count * sizeof(pollfd))) return -1;
+    const int ready = poll_until(entries, count, deadline);
+    return ready >= 0 && !copy_to_program(theirs, entries, count * sizeof(pollfd)) ? -1 : ready;
+}
+
+/// A timeout that is given; false and errno if it is none.
+bool get_timeout(const timespec* timeout, Time& deadline) {
+    timespec given{};
+    if (timeout != nullptr && !get_from_program(given, timeout)) return false;
+    if (timeout != nullptr && (!is_valid(given) || given.tv_sec < 0)) {
+        errno = EINVAL;
+        return false;
+    }
+    deadline = deadline_of(timeout == nullptr ? nullptr : &given);
+    return true;
+}
+
+/// select_until() on sets of the program, which need not be as long as fd_set.
+int select_program(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time deadline) {
+    if (count < 0) {
+        errno = EINVAL;
+        return -1;
+    }
+    count = std::min(count, FD_SETSIZE);
+    constexpr int kWord = 64;
+    const std::size_t bytes = static_cast<std::size_t>((count + kWord - 1) / kWord) * sizeof(std::uint64_t);
+    fd_set ours[3];
+    fd_set* const theirs[3] = {reads, writes, errors};
+    for (int i = 0; i < 3; ++i) {
+        FD_ZERO(&ours[i]);
+        if (theirs[i] != nullptr && !copy_from_program(&ours[i], theirs[i], bytes)) return -1;
+    }
+    const auto given = [&](int i) { return theirs[i] != nullptr ? &ours[i] : nullptr; };
+    const int ready = select_until(count, given(0), given(1), given(2), deadline);
+    for (int i = 0; ready >= 0 && i < 3; ++i)
+        if (theirs[i] != nullptr && !copy_to_program(theirs[i], &ours[i], bytes)) return -1;
+    return ready;
+}
+}  // namespace
+
 SHIM_EXPORT int poll(pollfd* entries, nfds_t count, int timeout) {
     if (!active()) return REAL(poll)(entries, count, timeout);
-    return poll_until(entries, count, timeout < 0 ? kNever : time_after(timeout * kMillisecond));
+    return poll_program(entries, count, timeout < 0 ? kNever : time_after(timeout * kMillisecond));
 }
 
 SHIM_EXPORT int __poll_chk(pollfd* entries, nfds_t count, int timeout, size_t) {
@@ -172,19 +221,30 @@ SHIM_EXPORT int __poll_chk(pollfd* entries, nfds_t count, int timeout, size_t) {
 
 SHIM_EXPORT int ppoll(pollfd* entries, nfds_t count, const timespec* timeout, const sigset_t* mask) {
     if (!active()) return REAL(ppoll)(entries, count, timeout, mask);
-    return poll_until(entries, count, deadline_of(timeout));
+    Time deadline = kNever;
+    return get_timeout(timeout, deadline) ? poll_program(entries, count, deadline) : -1;
 }
 
 SHIM_EXPORT int select(int count, fd_set* reads, fd_set* writes, fd_set* errors, timeval* timeout) {
     if (!active()) return REAL(select)(count, reads, writes, errors, timeout);
     Time deadline = kNever;
-    if (timeout != nullptr)
-        deadline = time_after(timeout->tv_sec * kSecond + timeout->tv_usec * kMicrosecond);
-    const int result = select_until(count, reads, writes, errors, deadline);
-    if (timeout != nullptr) {  // as Linux does: what is left
+    timeval given{};
+    if (timeout != nullptr) {
+        if (!get_from_program(given, timeout)) return -1;
+        if (given.tv_sec < 0 || given.tv_usec < 0) {
+            errno = EINVAL;
+            return -1;
+        }
+        deadline = time_after(
+            from_timespec({given.tv_sec + given.tv_usec / 1'000'000, given.tv_usec % 1'000'000 * 1000}));
+    }
+    const int result = select_program(count, reads, writes, errors, deadline);
+    if (timeout != nullptr && result >= 0) {  // as Linux does: what is left
         const Time left = std::max<Time>(0, deadline - now());
-        timeout->tv_sec = left / kSecond;
-        timeout->tv_usec = left % kSecond / kMicrosecond;
+        given = {left / kSecond, left % kSecond / kMicrosecond};
+        const int error = errno;
+        put_to_program(timeout, given);
+        errno = error;
     }
     return result;
 }
@@ -192,5 +252,6 @@ SHIM_EXPORT int select(int count, fd_set* reads, fd_set* writes, fd_set* errors,
 SHIM_EXPORT int pselect(int count, fd_set* reads, fd_set* writes, fd_set* errors, const timespec* timeout,
                         const sigset_t* mask) {
     if (!active()) return REAL(pselect)(count, reads, writes, errors, timeout, mask);
-    return select_until(count, reads, writes, errors, deadline_of(timeout));
+    Time deadline = kNever;
+    return get_timeout(timeout, deadline) ? select_program(count, reads, writes, errors, deadline) : -1;
 }

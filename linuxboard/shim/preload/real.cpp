@@ -1,5 +1,7 @@
 #include "linuxboard/shim/preload/real.h"
 
+#include "linuxboard/shim/preload/raw_calls.h"
+
 #include <dlfcn.h>
 #include <unistd.h>
 
@@ -8,6 +10,7 @@
 namespace puckloop::shim {
 
 void* real_symbol(const char* name) {
+    if (void* raw = raw_function(name)) return raw;
     // Condition variables have two versions on x86-64; without a version dlsym may give the old layout.
     void* address = nullptr;
     if (std::strncmp(name, "pthread_cond_", 13) == 0) address = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.2");

@@ -15,7 +15,7 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kVersion = 5;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -198,6 +198,16 @@ struct ProcessEntry {
     std::atomic<std::int64_t> now{0};
     std::atomic<std::uint32_t> thread{0};
     char call_name[kNameLength] = {};  ///< the last call taken over
+    /// Processor time used, picoseconds: what the process's calls were charged, and those of its children
+    /// that it has waited for.
+    std::int64_t computed = 0;
+    std::int64_t children_computed = 0;
+    // Faults that went to a handler of the program, at the same simulated time.
+    std::uint32_t fault_signal = 0;
+    std::int64_t fault_time = 0;
+    std::uint64_t fault_place = 0;    ///< of the instruction
+    std::uint64_t fault_address = 0;  ///< that it asked for
+    std::atomic<std::uint64_t> faults{0};
 };
 
 /// What the node sets before the program starts, and the processes, so that the node can find where one hangs

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/files/video_names.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/outside.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
@@ -19,6 +20,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
 using namespace puckloop::shim;
 
@@ -77,11 +79,16 @@ int open_named_pipe(const char* path, int flags) {
 /// A pipe opened anew by the name of its descriptor is still one of the program's own.
 int opened(const char* path, int fd) {
     int named = -1;
-    if (fd < 0 || !active() || path == nullptr) return fd;
+    if (fd < 0 || !active()) return fd;
     if (std::sscanf(path, "/dev/fd/%d", &named) != 1 && std::sscanf(path, "/proc/self/fd/%d", &named) != 1)
         return fd;
     if (is_internal(named)) mark_internal(fd);
     return fd;
+}
+
+/// The path does not depend on another folder than the working directory.
+bool is_absolute_from(int folder, const char* path) {
+    return folder == AT_FDCWD || (is_text(path) && path[0] == '/');
 }
 
 }  // namespace
@@ -113,9 +120,9 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     va_start(arguments, flags);
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
-    const int device = device_of(path);
+    const int device = device_at(folder, path);
     if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
-    if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
+    if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
                                : open_device(device, flags);
@@ -126,9 +133,9 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     va_start(arguments, flags);
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
-    const int device = device_of(path);
+    const int device = device_at(folder, path);
     if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
-    if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
+    if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))
                                : open_device(device, flags);
@@ -189,14 +196,18 @@ SHIM_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
 }
 
 SHIM_EXPORT int dup(int fd) noexcept {
+    if (active() && is_link_descriptor(fd)) {
+        errno = EBADF;
+        return -1;
+    }
     const int copy = REAL(dup)(fd);
     if (copy >= 0 && active()) copied(fd, copy);
     return copy;
 }
 
 SHIM_EXPORT int dup3(int fd, int copy, int flags) noexcept {
-    if (active() && is_link_descriptor(copy)) {
-        errno = EBUSY;
+    if (active() && (is_link_descriptor(copy) || is_link_descriptor(fd))) {
+        errno = is_link_descriptor(fd) ? EBADF : EBUSY;
         return -1;
     }
     const int result = REAL(dup3)(fd, copy, flags);
@@ -205,8 +216,8 @@ SHIM_EXPORT int dup3(int fd, int copy, int flags) noexcept {
 }
 
 SHIM_EXPORT int dup2(int fd, int copy) noexcept {
-    if (active() && is_link_descriptor(copy)) {
-        errno = EBUSY;
+    if (active() && (is_link_descriptor(copy) || is_link_descriptor(fd))) {
+        errno = is_link_descriptor(fd) ? EBADF : EBUSY;
         return -1;
     }
     const int result = REAL(dup2)(fd, copy);
@@ -215,15 +226,56 @@ SHIM_EXPORT int dup2(int fd, int copy) noexcept {
 }
 
 namespace {
+/// F_SETFL changes these.
+constexpr int kSettableFlags = O_APPEND | O_NONBLOCK | O_NOATIME;
+
+/// Locks of a device: only processes that know each other contend for it, and the host's file behind it is
+/// everybody's.
+int lock_device(int command, long argument) {
+    struct flock lock {};
+    auto* const theirs = reinterpret_cast<struct flock*>(argument);
+    if (!get_from_program(lock, theirs)) return -1;
+    if (lock.l_type != F_RDLCK && lock.l_type != F_WRLCK && lock.l_type != F_UNLCK) {
+        errno = EINVAL;
+        return -1;
+    }
+    if (command != F_GETLK && command != F_OFD_GETLK) return 0;
+    lock.l_type = F_UNLCK;
+    return put_to_program(theirs, lock) ? 0 : -1;
+}
+
 int control(int fd, int command, long argument, decltype(&::fcntl) real) {
-    if (command == F_SETFD && active() && is_link_descriptor(fd)) return 0;
+    if (active() && is_link_descriptor(fd)) {
+        if (command == F_SETFD) return 0;
+        errno = EBADF;
+        return -1;
+    }
     OpenFile* file = open_file(fd);
-    if (file != nullptr && command == F_GETFL) return file->flags | O_LARGEFILE;
-    if (file != nullptr && command == F_SETFL) {
+    switch (file != nullptr ? command : -1) {
+    case F_GETFL:
+        return file->flags | O_LARGEFILE;
+    case F_SETFL:
         charge(page().charges.device);
+        if ((argument & O_DIRECT) != 0) {
+            errno = EINVAL;
+            return -1;
+        }
         if ((argument & O_ASYNC) != 0) note("%s: O_ASYNC (SIGIO) is not supported", file->path);
-        file->flags = (file->flags & O_ACCMODE) | static_cast<int>(argument & O_NONBLOCK);
+        file->flags = (file->flags & ~kSettableFlags) | static_cast<int>(argument & kSettableFlags);
         return 0;
+    case F_GETLK:
+    case F_SETLK:
+    case F_SETLKW:
+    case F_OFD_GETLK:
+    case F_OFD_SETLK:
+    case F_OFD_SETLKW:
+        return lock_device(command, argument);
+    case F_SETLEASE:
+    case F_NOTIFY:
+        errno = command == F_NOTIFY ? ENOTDIR : EINVAL;
+        return -1;
+    default:
+        break;
     }
     const int result = real(fd, command, argument);
     if (active() && result >= 0 && (command == F_DUPFD || command == F_DUPFD_CLOEXEC)) copied(fd, result);
@@ -277,34 +329,67 @@ SHIM_EXPORT ssize_t write(int fd, const void* data, size_t size) {
     return written;
 }
 
-SHIM_EXPORT ssize_t readv(int fd, const iovec* parts, int count) {
-    OpenFile* file = open_file(fd);
-    if (file == nullptr) return outside(fd, POLLIN, [&] { return REAL(readv)(fd, parts, count); });
-    char data[wire::kMaximumData];
+namespace {
+/// The parts of readv() and writev(), checked as the kernel does.
+struct Parts {
+    std::vector<iovec> list;
     std::size_t size = 0;
-    for (int i = 0; i < count; ++i)
-        size += parts[i].iov_len;
-    const std::int64_t result = read_device(*file, data, std::min(size, sizeof data));
-    const char* cursor = data;
+};
+
+bool get_parts(Parts& parts, const iovec* theirs, int count) {
+    if (count < 0 || count > IOV_MAX) {
+        errno = EINVAL;
+        return false;
+    }
+    parts.list.resize(static_cast<std::size_t>(count));
+    if (!copy_from_program(parts.list.data(), theirs, parts.list.size() * sizeof(iovec))) return false;
+    for (const iovec& part : parts.list) {
+        if (part.iov_len > SSIZE_MAX - parts.size) {
+            errno = EINVAL;
+            return false;
+        }
+        parts.size += part.iov_len;
+    }
+    return true;
+}
+}  // namespace
+
+SHIM_EXPORT ssize_t readv(int fd, const iovec* theirs, int count) {
+    OpenFile* file = open_file(fd);
+    if (file == nullptr) return outside(fd, POLLIN, [&] { return REAL(readv)(fd, theirs, count); });
+    Parts parts;
+    if (!get_parts(parts, theirs, count)) return -1;
+    std::vector<char> data(std::min<std::size_t>(parts.size, wire::kVideoBufferSize));
+    const std::int64_t result = read_device(*file, data.data(), data.size());
+    const char* cursor = data.data();
     std::int64_t left = result;
-    for (int i = 0; i < count && left > 0; ++i) {
-        const auto part = std::min<std::size_t>(parts[i].iov_len, static_cast<std::size_t>(left));
-        std::memcpy(parts[i].iov_base, cursor, part);
-        cursor += part;
-        left -= static_cast<std::int64_t>(part);
+    for (const iovec& part : parts.list) {
+        if (left <= 0) break;
+        const auto size = std::min<std::size_t>(part.iov_len, static_cast<std::size_t>(left));
+        if (!copy_to_program(part.iov_base, cursor, size)) return cursor > data.data() ? result - left : -1;
+        cursor += size;
+        left -= static_cast<std::int64_t>(size);
     }
     return result;
 }
 
-SHIM_EXPORT ssize_t writev(int fd, const iovec* parts, int count) {
+SHIM_EXPORT ssize_t writev(int fd, const iovec* theirs, int count) {
     OpenFile* file = open_file(fd);
-    if (file == nullptr) return outside(fd, POLLOUT, [&] { return REAL(writev)(fd, parts, count); });
-    char data[wire::kMaximumData];
-    std::size_t size = 0;
-    for (int i = 0; i < count; ++i) {
-        const std::size_t part = std::min(parts[i].iov_len, sizeof data - size);
-        std::memcpy(data + size, parts[i].iov_base, part);
-        size += part;
+    if (file == nullptr) return outside(fd, POLLOUT, [&] { return REAL(writev)(fd, theirs, count); });
+    Parts parts;
+    if (!get_parts(parts, theirs, count)) return -1;
+    constexpr std::size_t kMost = std::size_t{1} << 20;  // the rest is another call's
+    std::vector<char> data;
+    for (const iovec& part : parts.list) {
+        const std::size_t size = std::min(part.iov_len, kMost - data.size());
+        const std::size_t before = data.size();
+        if (readable_bytes(part.iov_base, size) < size) {
+            if (before > 0) break;
+            errno = EFAULT;
+            return -1;
+        }
+        data.resize(before + size);
+        copy_from_program(data.data() + before, part.iov_base, size);
     }
-    return write_device(*file, data, size);
+    return write_device(*file, data.data(), data.size());
 }

@@ -1,114 +1,143 @@
-// The ioctls of /dev/i2c-N (Documentation/i2c/dev-interface). SMBus calls become plain I2C messages, as the
-// kernel does for an adapter without SMBus hardware.
+// read(), write() and the ioctls of /dev/i2c-N: checks and answers in the order of the kernel's
+// drivers/i2c/i2c-dev.c, on an adapter as drivers/i2c/busses/i2c-omap.c gives it.
 
-#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/files/i2c_transfer.h"
+#include "linuxboard/shim/preload/program_memory.h"
 
-#include <linux/i2c-dev.h>
-#include <linux/i2c.h>
+#include <limits.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string>
+#include <vector>
 
 namespace puckloop::shim {
 
 namespace {
-constexpr unsigned kHighestAddress = 0x7f;
+constexpr unsigned long kHighestAddress = 0x7f;
+constexpr unsigned long kHighestTenBitAddress = 0x3ff;
 constexpr std::uint32_t kTimeoutUnitMs = 10;
+/// Of i2c-omap: no quick command, no block read.
 constexpr unsigned long kFunctions =
-    I2C_FUNC_I2C | (I2C_FUNC_SMBUS_EMUL & ~I2C_FUNC_SMBUS_PEC) | I2C_FUNC_SMBUS_READ_BLOCK_DATA;
-/// Longest SMBus message: command, count and block.
-constexpr std::size_t kSmbusBytes = I2C_SMBUS_BLOCK_MAX + 2;
+    I2C_FUNC_I2C | (I2C_FUNC_SMBUS_EMUL & ~I2C_FUNC_SMBUS_QUICK) | I2C_FUNC_PROTOCOL_MANGLING;
+constexpr std::size_t kMostTransferData = wire::kMaximumData - 1024;
 
-int smbus(OpenFile& file, const i2c_smbus_ioctl_data& call) {
-    const bool reads = call.read_write == I2C_SMBUS_READ;
-    __u8 out[kSmbusBytes] = {call.command};
-    __u8 in[kSmbusBytes] = {};
-    i2c_msg messages[2] = {{file.slave, 0, 1, out}, {file.slave, I2C_M_RD, 0, in}};
-    unsigned count = 1;
-    i2c_smbus_data* data = call.data;
-    const auto write_then_read = [&](unsigned length) {
-        messages[1].len = static_cast<__u16>(length);
-        count = 2;
-    };
-    switch (call.size) {
-    case I2C_SMBUS_QUICK:
-        messages[0].len = 0;
-        messages[0].flags = reads ? I2C_M_RD : 0;
-        break;
-    case I2C_SMBUS_BYTE:
-        if (reads) {
-            messages[0] = {file.slave, I2C_M_RD, 1, in};
+int fail(int error) {
+    errno = error;
+    return -1;
+}
+
+/// Refuses what the adapter cannot do; 0, or -1 and errno.
+int check(const OpenFile& file, const i2c_msg* messages, unsigned count) {
+    std::size_t out = 0, in = 0;
+    for (unsigned i = 0; i < count; ++i) {
+        const i2c_msg& message = messages[i];
+        if (message.len == 0) return fail(EINVAL);
+        // i2c-omap does not know I2C_M_RECV_LEN: it reads as many bytes as the message has.
+        constexpr int kKnown = I2C_M_RD | I2C_M_RECV_LEN;
+        if ((message.flags & ~kKnown) != 0) {
+            note("%s: I2C message flags 0x%x are not supported", file.path, message.flags);
+            return fail(EOPNOTSUPP);
         }
-        break;
-    case I2C_SMBUS_BYTE_DATA:
-        if (reads) {
-            write_then_read(1);
-        } else {
-            out[1] = data->byte;
-            messages[0].len = 2;
-        }
-        break;
-    case I2C_SMBUS_WORD_DATA:
-    case I2C_SMBUS_PROC_CALL:
-        if (!reads || call.size == I2C_SMBUS_PROC_CALL) {
-            out[1] = static_cast<__u8>(data->word & 0xff);
-            out[2] = static_cast<__u8>(data->word >> 8);
-            messages[0].len = 3;
-        }
-        if (reads || call.size == I2C_SMBUS_PROC_CALL) write_then_read(2);
-        break;
-    case I2C_SMBUS_BLOCK_DATA:
-        if (reads) {
-            write_then_read(1);
-            messages[1].flags |= I2C_M_RECV_LEN;
-        } else {
-            const __u8 length = std::min<__u8>(data->block[0], I2C_SMBUS_BLOCK_MAX);
-            std::memcpy(out + 1, data->block, length + 1u);
-            messages[0].len = static_cast<__u16>(length + 2);
-        }
-        break;
-    case I2C_SMBUS_I2C_BLOCK_DATA:
-    case I2C_SMBUS_I2C_BLOCK_BROKEN: {
-        const __u8 length = std::min<__u8>(data->block[0], I2C_SMBUS_BLOCK_MAX);
-        if (reads) {
-            write_then_read(length);
-        } else {
-            std::memcpy(out + 1, data->block + 1, length);
-            messages[0].len = static_cast<__u16>(length + 1);
-        }
-        break;
+        const bool reads = (message.flags & I2C_M_RD) != 0;
+        out += sizeof(wire::I2cSegment) + (reads ? 0 : message.len);
+        in += reads ? message.len : 0;
     }
-    default:
-        note("%s: SMBus transaction %u is not supported", file.path, call.size);
-        errno = EOPNOTSUPP;
-        return -1;
+    if (out <= kMostTransferData && in <= kMostTransferData) return 0;
+    note("%s: an I2C transfer of more than %zu bytes is not supported", file.path, kMostTransferData);
+    return fail(EOPNOTSUPP);
+}
+
+int rdwr(OpenFile& file, const void* argument) {
+    i2c_rdwr_ioctl_data call{};
+    if (!get_from_program(call, argument)) return -1;
+    if (call.msgs == nullptr || call.nmsgs == 0 || call.nmsgs > I2C_RDWR_IOCTL_MAX_MSGS) return fail(EINVAL);
+    i2c_msg theirs[I2C_RDWR_IOCTL_MAX_MSGS], ours[I2C_RDWR_IOCTL_MAX_MSGS];
+    if (!copy_from_program(theirs, call.msgs, call.nmsgs * sizeof theirs[0])) return -1;
+    std::vector<std::string> buffers(call.nmsgs);
+    for (unsigned i = 0; i < call.nmsgs; ++i) {
+        i2c_msg& message = ours[i] = theirs[i];
+        if (message.len > kMostMessageBytes) return fail(EINVAL);
+        buffers[i].resize(message.len);
+        message.buf = reinterpret_cast<__u8*>(buffers[i].data());
+        if (!copy_from_program(message.buf, theirs[i].buf, message.len)) return -1;
+        if ((message.flags & I2C_M_RECV_LEN) == 0) continue;
+        const bool reads = (message.flags & I2C_M_RD) != 0;
+        if (!reads || message.len == 0 || message.buf[0] < 1 ||
+            message.len < message.buf[0] + I2C_SMBUS_BLOCK_MAX)
+            return fail(EINVAL);
+        message.len = message.buf[0];
     }
-    if (transfer(file, messages, count) < 0) return -1;
-    if (data == nullptr || (!reads && call.size != I2C_SMBUS_PROC_CALL)) return 0;
-    switch (call.size) {
-    case I2C_SMBUS_BYTE:
-    case I2C_SMBUS_BYTE_DATA:
-        data->byte = in[0];
-        break;
-    case I2C_SMBUS_WORD_DATA:
-    case I2C_SMBUS_PROC_CALL:
-        data->word = static_cast<__u16>(in[0] | in[1] << 8);
-        break;
-    case I2C_SMBUS_BLOCK_DATA:
-        std::memcpy(data->block, in, I2C_SMBUS_BLOCK_MAX + 1);
-        break;
-    case I2C_SMBUS_I2C_BLOCK_DATA:
-    case I2C_SMBUS_I2C_BLOCK_BROKEN:
-        data->block[0] = static_cast<__u8>(messages[1].len);
-        std::memcpy(data->block + 1, in, messages[1].len);
-        break;
-    default:
-        break;
-    }
+    const int done = transfer(file, ours, call.nmsgs);
+    for (unsigned i = 0; done >= 0 && i < call.nmsgs; ++i)
+        if ((ours[i].flags & I2C_M_RD) != 0 && !copy_to_program(theirs[i].buf, ours[i].buf, ours[i].len))
+            return -1;
+    return done;
+}
+
+int set_slave(OpenFile& file, unsigned long address) {
+    if (address > kHighestTenBitAddress || (!file.ten_bit && address > kHighestAddress)) return fail(EINVAL);
+    file.slave = static_cast<std::uint16_t>(address);
     return 0;
 }
 }  // namespace
+
+int transfer(OpenFile& file, i2c_msg* messages, unsigned count) {
+    if (check(file, messages, count) != 0) return -1;
+    std::string data, answer;
+    for (unsigned i = 0; i < count; ++i) {
+        const i2c_msg& message = messages[i];
+        const bool reads = (message.flags & I2C_M_RD) != 0;
+        const wire::I2cSegment segment{message.addr, static_cast<std::uint16_t>(message.flags & I2C_M_RD),
+                                       message.len};
+        data.append(reinterpret_cast<const char*>(&segment), sizeof segment);
+        if (!reads) data.append(reinterpret_cast<const char*>(message.buf), message.len);
+        if (reads) answer.resize(answer.size() + message.len);
+    }
+    wire::Request request;
+    request.op = wire::Op::Transfer;
+    request.handle = file.handle;
+    request.a = file.timeout_ms;
+    request.b = count;
+    std::size_t received = 0;
+    const auto done = static_cast<int>(
+        device_call(request, data.data(), data.size(), answer.data(), answer.size(), false, &received));
+    if (done < 0) return -1;
+    std::size_t used = 0;
+    for (unsigned i = 0; i < count; ++i) {
+        if ((messages[i].flags & I2C_M_RD) == 0) continue;
+        const std::size_t length = std::min<std::size_t>(messages[i].len, received - used);
+        std::memcpy(messages[i].buf, answer.data() + used, length);
+        used += length;
+    }
+    return done;
+}
+
+/// With a ten-bit address, which the adapter's model does not know.
+static bool ten_bit_refused(const OpenFile& file) {
+    if (!file.ten_bit) return false;
+    note("%s: ten-bit I2C addresses are not supported", file.path);
+    errno = EOPNOTSUPP;
+    return true;
+}
+
+std::int64_t read_i2c(OpenFile& file, void* buffer, std::size_t size) {
+    if (ten_bit_refused(file)) return -1;
+    std::string data(std::min(size, kMostMessageBytes), '\0');
+    i2c_msg message{file.slave, I2C_M_RD, static_cast<__u16>(data.size()),
+                    reinterpret_cast<__u8*>(data.data())};
+    if (transfer(file, &message, 1) < 0) return -1;
+    return copy_to_program(buffer, data.data(), data.size()) ? message.len : -1;
+}
+
+std::int64_t write_i2c(OpenFile& file, const void* data, std::size_t size) {
+    if (ten_bit_refused(file)) return -1;
+    std::string copy(std::min(size, kMostMessageBytes), '\0');
+    if (!copy_from_program(copy.data(), data, copy.size())) return -1;
+    i2c_msg message{file.slave, 0, static_cast<__u16>(copy.size()), reinterpret_cast<__u8*>(copy.data())};
+    return transfer(file, &message, 1) < 0 ? -1 : message.len;
+}
 
 int i2c_ioctl(OpenFile& file, unsigned long request, void* argument, const void* caller);
 
@@ -117,38 +146,29 @@ int i2c_ioctl(OpenFile& file, unsigned long request, void* argument, const void*
     switch (request) {
     case I2C_SLAVE:
     case I2C_SLAVE_FORCE:
-        if (value > kHighestAddress) {
-            errno = EINVAL;
-            return -1;
-        }
-        file.slave = static_cast<std::uint16_t>(value);
+        return set_slave(file, value);
+    case I2C_TENBIT:
+        file.ten_bit = value != 0;
+        return 0;
+    case I2C_PEC:
+        file.pec = value != 0;
         return 0;
     case I2C_FUNCS:
-        *static_cast<unsigned long*>(argument) = kFunctions;
-        return 0;
-    case I2C_RDWR: {
-        const auto* data = static_cast<const i2c_rdwr_ioctl_data*>(argument);
-        if (data->nmsgs > I2C_RDWR_IOCTL_MAX_MSGS || data->msgs == nullptr) {
-            errno = EINVAL;
-            return -1;
-        }
-        return transfer(file, data->msgs, data->nmsgs);
-    }
+        return put_to_program(argument, kFunctions) ? 0 : -1;
+    case I2C_RDWR:
+        return rdwr(file, argument);
     case I2C_SMBUS:
-        return smbus(file, *static_cast<const i2c_smbus_ioctl_data*>(argument));
+        return ten_bit_refused(file) ? -1 : smbus_ioctl(file, argument);
+    case I2C_RETRIES:  // the driver retries lost arbitration only, which fails at once here
+        return value > INT_MAX ? fail(EINVAL) : 0;
     case I2C_TIMEOUT:
-        file.timeout_ms = static_cast<std::uint32_t>(value) * kTimeoutUnitMs;
+        if (value > INT_MAX) return fail(EINVAL);
+        file.timeout_ms =
+            static_cast<std::uint32_t>(std::min<unsigned long>(value * kTimeoutUnitMs, UINT32_MAX));
         return 0;
-    case I2C_RETRIES:
-        return 0;  // the driver retries lost arbitration only, which fails at once here
-    case I2C_TENBIT:
-    case I2C_PEC:
-        if (value == 0) return 0;
-        [[fallthrough]];
     default:
         note("%s: ioctl 0x%lx is not supported (in %s)", file.path, request, place_of(caller));
-        errno = request == I2C_TENBIT ? EINVAL : ENOTTY;
-        return -1;
+        return fail(ENOTTY);
     }
 }
 

@@ -2,12 +2,11 @@
 
 #include "base/random.h"
 #include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <linux/i2c-dev.h>
-#include <linux/i2c.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,8 +19,21 @@ namespace puckloop::shim {
 namespace {
 constexpr int kMostDescriptors = 4096;
 OpenFile* table[kMostDescriptors];
-constexpr const char* kRandomPaths[] = {"/dev/urandom", "/dev/random"};
-constexpr std::size_t kMostTransferData = wire::kMaximumData - 1024;
+constexpr const char* kRandomPath = "/dev/urandom";
+/// What F_GETFL shows of the flags that open() takes.
+constexpr int kKeptFlags = O_ACCMODE | O_NONBLOCK | O_APPEND | O_SYNC | O_NOATIME;
+/// The tty layer takes what is written in pieces of so many bytes.
+constexpr std::size_t kTtyChunk = 2048;
+
+/// What the kernel checks of every buffer before it does anything: that it can be the program's at all.
+bool is_user_range(const void* buffer, std::size_t size) {
+    constexpr std::uintptr_t kEnd = std::uintptr_t{1} << 47;
+    const auto begin = reinterpret_cast<std::uintptr_t>(buffer);
+    if (begin <= kEnd && size <= kEnd - begin) return true;
+    errno = EFAULT;
+    return false;
+}
+
 }  // namespace
 
 /// The device's name in this program's own view of the page.
@@ -34,19 +46,6 @@ OpenFile* open_file(int fd) {
     return table[fd];
 }
 
-int device_of(const char* path) {
-    if (path == nullptr || !is_linked()) return kNoDevice;
-    for (const char* random : kRandomPaths) {
-        if (std::strcmp(path, random) == 0) return active() ? kRandomDevice : kNoDevice;
-    }
-    for (std::uint32_t i = 0; i < wire::kMaximumDevices; ++i) {
-        const wire::DeviceName& device = page().devices[i];
-        if (device.kind != wire::DeviceKind::None && std::strcmp(path, device.path) == 0)
-            return active() ? static_cast<int>(i) : kForbiddenDevice;
-    }
-    return kNoDevice;
-}
-
 int open_device(int device, int flags) {
     if (device == kForbiddenDevice) {
         host_complain("puckloop shim: a thread that was not made by pthread_create() has no devices\n");
@@ -54,18 +53,26 @@ int open_device(int device, int flags) {
         return -1;
     }
     mark_call("open");
-    const int fd = REAL(open)("/dev/null", O_RDWR | (flags & O_CLOEXEC));
-    if (fd < 0) return fd;
+    const int refused = (flags & O_DIRECTORY) != 0                           ? ENOTDIR
+                        : (flags & (O_CREAT | O_EXCL)) == (O_CREAT | O_EXCL) ? EEXIST
+                        : (flags & O_DIRECT) != 0 && device != kRandomDevice ? EINVAL
+                                                                             : 0;
+    if (refused != 0) {
+        errno = refused;
+        return -1;
+    }
+    const int fd = REAL(open)("/dev/null", flags & (O_ACCMODE | O_CLOEXEC | O_PATH));
+    if (fd < 0 || (flags & O_PATH) != 0) return fd;  // a path only: nothing is opened
     if (fd >= kMostDescriptors) {
         REAL(close)(fd);
         errno = EMFILE;
         return -1;
     }
     auto* file = new OpenFile;
-    file->flags = flags & (O_ACCMODE | O_NONBLOCK);
+    file->flags = flags & kKeptFlags;
     if (device == kRandomDevice) {
         file->kind = OpenFile::Kind::Random;
-        file->path = kRandomPaths[0];
+        file->path = kRandomPath;
     } else {
         const wire::DeviceName& name = page().devices[device];
         file->kind = name.kind == wire::DeviceKind::Tty   ? OpenFile::Kind::Tty
@@ -109,7 +116,7 @@ void take_over_files(FileEntry* list, std::size_t count) {
         if (list[i].same_as == list[i].fd) {
             file = new OpenFile(list[i].file);
             file->references = 0;
-            file->path = file->kind == OpenFile::Kind::Random ? kRandomPaths[0] : path_of(*file);
+            file->path = file->kind == OpenFile::Kind::Random ? kRandomPath : path_of(*file);
         } else {
             file = table[list[i].same_as];
         }
@@ -146,20 +153,14 @@ bool release_file(int fd) {
 std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
     mark_call("read");
     pthread_testcancel();
-    if (file.kind == OpenFile::Kind::Random) {
-        random_bytes(buffer, size);
-        return static_cast<std::int64_t>(size);
-    }
+    if (file.kind == OpenFile::Kind::Random) return read_random(buffer, size);
     charge(page().charges.device);
-    if ((file.flags & O_ACCMODE) == O_WRONLY) {
+    if ((file.flags & O_ACCMODE) == O_WRONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
         errno = EBADF;
         return -1;
     }
-    if (file.kind == OpenFile::Kind::I2c) {
-        const auto length = static_cast<__u16>(std::min<std::size_t>(size, 8192));
-        i2c_msg message{file.slave, I2C_M_RD, length, static_cast<__u8*>(buffer)};
-        return transfer(file, &message, 1) == 1 ? length : -1;
-    }
+    if (!is_user_range(buffer, size)) return -1;
+    if (file.kind == OpenFile::Kind::I2c) return read_i2c(file, buffer, size);
     if (file.kind == OpenFile::Kind::Video) return read_video(file, buffer, size);
     wire::Request request;
     request.op = wire::Op::Read;
@@ -174,23 +175,27 @@ std::int64_t write_device(OpenFile& file, const void* data, std::size_t size) {
     pthread_testcancel();
     if (file.kind == OpenFile::Kind::Random) return static_cast<std::int64_t>(size);
     charge(page().charges.device);
-    if ((file.flags & O_ACCMODE) == O_RDONLY) {
+    if ((file.flags & O_ACCMODE) == O_RDONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
         errno = EBADF;
         return -1;
     }
-    if (file.kind == OpenFile::Kind::I2c) {
-        const auto length = static_cast<__u16>(std::min<std::size_t>(size, 8192));
-        i2c_msg message{file.slave, 0, length, static_cast<__u8*>(const_cast<void*>(data))};
-        return transfer(file, &message, 1) == 1 ? length : -1;
-    }
+    if (!is_user_range(data, size)) return -1;
+    if (file.kind == OpenFile::Kind::I2c) return write_i2c(file, data, size);
     if (file.kind == OpenFile::Kind::Video) {
         errno = EINVAL;  // a capture device takes none
         return -1;
     }
+    if (size == 0) return 0;
     std::int64_t written = 0;
     const char* bytes = static_cast<const char*>(data);
     while (true) {
-        const std::size_t part = std::min<std::size_t>(size, wire::kMaximumData);
+        std::size_t part = std::min<std::size_t>(size, wire::kMaximumData);
+        const std::size_t there = readable_bytes(bytes, part);
+        if (there < part) part = there / kTtyChunk * kTtyChunk;
+        if (part == 0) {
+            errno = EFAULT;
+            return written > 0 ? written : -1;
+        }
         wire::Request request;
         request.op = wire::Op::Write;
         request.handle = file.handle;
@@ -202,59 +207,6 @@ std::int64_t write_device(OpenFile& file, const void* data, std::size_t size) {
         size -= static_cast<std::size_t>(result);
         if (size == 0 || static_cast<std::size_t>(result) < part) return written;
     }
-}
-
-int transfer(OpenFile& file, void* messages, unsigned count) {
-    const auto* list = static_cast<const i2c_msg*>(messages);
-    static char data[wire::kMaximumData];
-    std::size_t size = 0;
-    std::size_t to_read = 0;
-    for (unsigned i = 0; i < count; ++i) {
-        const i2c_msg& message = list[i];
-        const bool reads = (message.flags & I2C_M_RD) != 0;
-        constexpr int kKnownFlags = I2C_M_RD | I2C_M_RECV_LEN;
-        if ((message.flags & ~kKnownFlags) != 0) {
-            note("%s: I2C message flags 0x%x are not supported", file.path, message.flags);
-            errno = EOPNOTSUPP;
-            return -1;
-        }
-        const std::size_t more = sizeof(wire::I2cSegment) + (reads ? 0 : message.len);
-        to_read += reads ? message.len : 0;
-        if (size + more > kMostTransferData || to_read > kMostTransferData) {
-            note("%s: an I2C transfer of more than %zu bytes is not supported", file.path, kMostTransferData);
-            errno = EOPNOTSUPP;
-            return -1;
-        }
-        const wire::I2cSegment segment{message.addr, message.flags, message.len};
-        std::memcpy(data + size, &segment, sizeof segment);
-        size += sizeof segment;
-        if (!reads && message.len > 0) {
-            std::memcpy(data + size, message.buf, message.len);
-            size += message.len;
-        }
-    }
-    wire::Request request;
-    request.op = wire::Op::Transfer;
-    request.handle = file.handle;
-    request.a = file.timeout_ms;
-    request.b = count;
-    auto* answer = static_cast<char*>(__builtin_alloca(to_read + 64));
-    std::size_t received = 0;
-    const auto done =
-        static_cast<int>(device_call(request, data, size, answer, to_read + 64, false, &received));
-    if (done < 0) return -1;
-    std::size_t used = 0;
-    for (unsigned i = 0; i < count; ++i) {
-        const i2c_msg& message = list[i];
-        if ((message.flags & I2C_M_RD) == 0 || message.len == 0) continue;
-        std::size_t length = message.len;
-        if ((message.flags & I2C_M_RECV_LEN) != 0 && used < received)
-            length += static_cast<unsigned char>(answer[used]);
-        length = std::min(length, received - used);
-        std::memcpy(message.buf, answer + used, length);
-        used += length;
-    }
-    return done;
 }
 
 const char* place_of(const void* address) {
@@ -285,6 +237,20 @@ void random_bytes(void* buffer, std::size_t size) {
     auto* out = static_cast<unsigned char*>(buffer);
     for (std::size_t i = 0; i < size; ++i)
         out[i] = static_cast<unsigned char>(stream.next() >> 56);
+}
+
+std::int64_t read_random(void* buffer, std::size_t size) {
+    char* out = static_cast<char*>(buffer);
+    std::size_t done = 0;
+    while (done < size) {
+        char part[256];
+        const std::size_t more = std::min(size - done, sizeof part);
+        random_bytes(part, more);
+        if (!copy_to_program(out + done, part, more)) break;
+        done += more;
+    }
+    if (done == 0 && size > 0) return -1;
+    return static_cast<std::int64_t>(done);
 }
 
 }  // namespace puckloop::shim

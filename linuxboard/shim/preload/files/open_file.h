@@ -16,11 +16,13 @@ struct OpenFile {
     const char* path = "";
     int handle = -1;
     int references = 0;
-    int flags = 0;    ///< O_ACCMODE and O_NONBLOCK
+    int flags = 0;    ///< as F_GETFL shows them, without O_LARGEFILE
     int device = -1;  ///< index into the page's list; -1: none of the node's
     // i2c-dev, per open file
     std::uint16_t slave = 0;
     std::uint32_t timeout_ms = 1000;
+    bool ten_bit = false;
+    bool pec = false;
 };
 
 /// The device behind a descriptor, or nullptr. Always nullptr while nothing is conducted.
@@ -31,6 +33,9 @@ inline constexpr int kRandomDevice = -2;
 /// A device of the node, named by a process that is outside of simulated time.
 inline constexpr int kForbiddenDevice = -3;
 int device_of(const char* path);
+/// The same for a path that begins at the open folder `folder`, as openat() takes it; without `follow` a
+/// symbolic link to a device is none.
+int device_at(int folder, const char* path, bool follow = true);
 
 /// Opens a device; a descriptor, or -1 and errno.
 int open_device(int device, int flags);
@@ -52,8 +57,9 @@ bool release_file(int fd);
 
 std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size);
 std::int64_t write_device(OpenFile& file, const void* data, std::size_t size);
-/// One or several I2C messages, as struct i2c_msg; number of messages done, or -1 and errno.
-int transfer(OpenFile& file, void* messages, unsigned count);
+/// i2c_calls.cpp: one message each.
+std::int64_t read_i2c(OpenFile& file, void* buffer, std::size_t size);
+std::int64_t write_i2c(OpenFile& file, const void* data, std::size_t size);
 /// video_calls.cpp: a frame, or what is left of it, and the ioctls of a camera.
 std::int64_t read_video(OpenFile& file, void* buffer, std::size_t size);
 int video_ioctl(OpenFile& file, unsigned long request, void* argument);
@@ -64,6 +70,8 @@ const char* place_of(const void* address);
 
 /// Deterministic bytes instead of the host's random ones.
 void random_bytes(void* buffer, std::size_t size);
+/// The same for a buffer of the program: as many as there is memory for, or -1 and EFAULT.
+std::int64_t read_random(void* buffer, std::size_t size);
 
 // external.cpp: descriptors that are not devices (pipes, sockets) and may block the one running thread
 /// Waits until the host reports that `fd` is ready for `events`; false if a signal came first.

@@ -1,6 +1,8 @@
 // termios and ioctl on the serial port and on the I2C adapter.
 
+#include "linuxboard/shim/preload/files/device_numbers.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <fcntl.h>
@@ -9,6 +11,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
@@ -17,6 +20,11 @@
 using namespace puckloop::shim;
 
 namespace puckloop::shim {
+
+static int fail(int error) {
+    errno = error;
+    return -1;
+}
 
 namespace {
 /// The kernel's struct termios (asm-generic), which TCGETS and TCSETS carry, and its successor.
@@ -32,6 +40,7 @@ constexpr unsigned long kTcGets2 = 0x802c542a;
 constexpr unsigned long kTcSets2 = 0x402c542b;
 constexpr tcflag_t kOtherBaud = 0010000;  // BOTHER
 constexpr std::uint32_t kBreakMicroseconds = 250'000;
+constexpr std::uint32_t kMostBreak = 36'000;  // tenths of a second: one hour
 constexpr int kModemLines = TIOCM_CTS | TIOCM_CAR | TIOCM_DSR;
 
 struct Rate {
@@ -131,82 +140,187 @@ int unsupported(const OpenFile& file, unsigned long request, const void* caller,
     return -1;
 }
 
+/// The older struct of TCGETA and TCSETA.
+struct KernelTermio {
+    unsigned short c_iflag, c_oflag, c_cflag, c_lflag;
+    unsigned char c_line, c_cc[8];
+};
+
+int put_number(void* argument, int number) {
+    return number >= 0 && put_to_program(argument, number) ? 0 : -1;
+}
+
+int send_break(const OpenFile& file, std::uint32_t microseconds) {
+    return static_cast<int>(
+        device_call(request_for(file, wire::Op::Break, 0, microseconds), nullptr, 0, nullptr, 0, true));
+}
+
+int drain(const OpenFile& file) {
+    return static_cast<int>(device_call(request_for(file, wire::Op::Drain), nullptr, 0, nullptr, 0, true));
+}
+
+int get_old_termio(const OpenFile& file, void* argument) {
+    KernelTermios settings{};
+    if (get_kernel_termios(file, settings) != 0) return -1;
+    KernelTermio old{};
+    old.c_iflag = static_cast<unsigned short>(settings.c_iflag);
+    old.c_oflag = static_cast<unsigned short>(settings.c_oflag);
+    old.c_cflag = static_cast<unsigned short>(settings.c_cflag);
+    old.c_lflag = static_cast<unsigned short>(settings.c_lflag);
+    old.c_line = settings.c_line;
+    std::memcpy(old.c_cc, settings.c_cc, sizeof old.c_cc);
+    return put_to_program(argument, old) ? 0 : -1;
+}
+
+int set_old_termio(const OpenFile& file, int when, const void* argument) {
+    KernelTermio old{};
+    KernelTermios settings{};
+    if (!get_from_program(old, argument) || get_kernel_termios(file, settings) != 0) return -1;
+    const auto low = [](tcflag_t& flags, unsigned short bits) { flags = (flags & ~tcflag_t{0xffff}) | bits; };
+    low(settings.c_iflag, old.c_iflag);
+    low(settings.c_oflag, old.c_oflag);
+    low(settings.c_cflag, old.c_cflag);
+    low(settings.c_lflag, old.c_lflag);
+    settings.c_line = old.c_line;
+    std::memcpy(settings.c_cc, old.c_cc, sizeof old.c_cc);
+    return set_kernel_termios(file, when, settings, settings.c_cflag & CBAUD);
+}
+
+/// TIOCMGET and its kin: the lines' outputs are stored, the inputs read as set.
+int modem_ioctl(unsigned long request, void* argument) {
+    static int outputs = TIOCM_DTR | TIOCM_RTS;
+    constexpr int kOutputs = TIOCM_DTR | TIOCM_RTS;
+    if (request == TIOCMGET) return put_number(argument, outputs | kModemLines);
+    int lines = 0;
+    if (!get_from_program(lines, argument)) return -1;
+    lines &= kOutputs;
+    outputs = request == TIOCMSET ? lines : request == TIOCMBIS ? outputs | lines : outputs & ~lines;
+    return 0;
+}
+
+int get_speeds(const OpenFile& file, void* argument) {
+    KernelTermios2 out{};
+    if (get_kernel_termios(file, out) != 0) return -1;
+    out.c_ispeed = out.c_ospeed = 0;
+    for (const Rate& known : kRates)
+        if (known.code == (out.c_cflag & CBAUD)) out.c_ispeed = out.c_ospeed = known.rate;
+    return put_to_program(argument, out) ? 0 : -1;
+}
+
+int get_serial(void* argument) {
+    serial_struct serial{};
+    serial.type = 4;  // PORT_16550A
+    serial.baud_base = 921'600;
+    serial.xmit_fifo_size = 16;
+    return put_to_program(argument, serial) ? 0 : -1;
+}
+
+int set_discipline(const OpenFile& file, void* argument) {
+    int number = 0;
+    if (!get_from_program(number, argument)) return -1;
+    if (number == N_TTY) return 0;
+    note("%s: the line discipline %d is not supported", file.path, number);
+    return fail(EINVAL);
+}
+
+int flush(const OpenFile& file, std::uint32_t which) {
+    return which > TCIOFLUSH ? fail(EINVAL) : simple(file, wire::Op::Flush, which);
+}
+
+int flow(const OpenFile& file, std::uint32_t action) {
+    return action > TCION ? fail(EINVAL) : simple(file, wire::Op::Flow, action);
+}
+
 int tty_ioctl(OpenFile& file, unsigned long request, void* argument, const void* caller) {
     const auto value = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(argument));
-    auto* integer = static_cast<int*>(argument);
-    static int modem_outputs = TIOCM_DTR | TIOCM_RTS;
     switch (request) {
-    case TCGETS:
-        return get_kernel_termios(file, *static_cast<KernelTermios*>(argument));
+    case TCGETS: {
+        KernelTermios out{};
+        return get_kernel_termios(file, out) == 0 && put_to_program(argument, out) ? 0 : -1;
+    }
     case TCSETS:
     case TCSETSW:
     case TCSETSF: {
-        const auto& in = *static_cast<const KernelTermios*>(argument);
+        KernelTermios in{};
+        if (!get_from_program(in, argument)) return -1;
         return set_kernel_termios(file, static_cast<int>(request - TCSETS), in, in.c_cflag & CBAUD);
     }
-    case kTcGets2: {
-        auto& out = *static_cast<KernelTermios2*>(argument);
-        if (get_kernel_termios(file, out) != 0) return -1;
-        out.c_ispeed = out.c_ospeed = 0;
-        for (const Rate& known : kRates) {
-            if (known.code == (out.c_cflag & CBAUD)) out.c_ispeed = out.c_ospeed = known.rate;
-        }
-        return 0;
-    }
+    case kTcGets2:
+        return get_speeds(file, argument);
     case kTcSets2:
     case kTcSets2 + 1:
-    case kTcSets2 + 2:
-        return set_kernel_termios2(file, static_cast<int>(request - kTcSets2),
-                                   *static_cast<const KernelTermios2*>(argument));
-    case TCFLSH:
-        return simple(file, wire::Op::Flush, value);
-    case TCXONC:
-        return simple(file, wire::Op::Flow, value);
-    case TCSBRK:
-        return value != 0 ? simple(file, wire::Op::Drain)
-                          : simple(file, wire::Op::Break, 0, kBreakMicroseconds);
-    case TCSBRKP:
-        return simple(file, wire::Op::Break, 0, value == 0 ? kBreakMicroseconds : value * 100'000);
-    case FIONREAD:
-        return (*integer = simple(file, wire::Op::InputQueue)) < 0 ? -1 : 0;
-    case TIOCOUTQ:
-        return (*integer = simple(file, wire::Op::OutputQueue)) < 0 ? -1 : 0;
-    case TIOCMGET:
-        *integer = modem_outputs | kModemLines;
-        return 0;
-    case TIOCMSET:
-        modem_outputs = *integer & (TIOCM_DTR | TIOCM_RTS);
-        return 0;
-    case TIOCMBIS:
-        modem_outputs |= *integer & (TIOCM_DTR | TIOCM_RTS);
-        return 0;
-    case TIOCMBIC:
-        modem_outputs &= ~*integer;
-        return 0;
-    case TIOCGICOUNT:
-        return counters(file, *static_cast<serial_icounter_struct*>(argument));
-    case TIOCGSERIAL: {
-        auto* serial = static_cast<serial_struct*>(argument);
-        std::memset(serial, 0, sizeof *serial);
-        serial->type = 4;  // PORT_16550A
-        serial->baud_base = 921'600;
-        serial->xmit_fifo_size = 16;
-        return 0;
+    case kTcSets2 + 2: {
+        KernelTermios2 in{};
+        if (!get_from_program(in, argument)) return -1;
+        return set_kernel_termios2(file, static_cast<int>(request - kTcSets2), in);
     }
-    case TIOCSSERIAL:
-    case TIOCEXCL:
+    case TCGETA:
+        return get_old_termio(file, argument);
+    case TCSETA:
+    case TCSETAW:
+    case TCSETAF:
+        return set_old_termio(file, static_cast<int>(request - TCSETA), argument);
+    case TCFLSH:
+        return flush(file, value);
+    case TCXONC:
+        return flow(file, value);
+    case TCSBRK:
+        return value != 0 ? drain(file) : send_break(file, kBreakMicroseconds);
+    case TCSBRKP:
+        return send_break(file, value == 0 ? kBreakMicroseconds
+                                           : std::min<std::uint32_t>(value, kMostBreak) * 100'000);
+    case FIONREAD:
+        return put_number(argument, simple(file, wire::Op::InputQueue));
+    case TIOCOUTQ:
+        return put_number(argument, simple(file, wire::Op::OutputQueue));
+    case TIOCMGET:
+    case TIOCMSET:
+    case TIOCMBIS:
+    case TIOCMBIC:
+        return modem_ioctl(request, argument);
+    case TIOCGICOUNT: {
+        serial_icounter_struct counted{};
+        return counters(file, counted) == 0 && put_to_program(argument, counted) ? 0 : -1;
+    }
+    case TIOCGSERIAL:
+        return get_serial(argument);
+    case TIOCSSERIAL: {
+        serial_struct serial{};
+        return get_from_program(serial, argument) ? 0 : -1;
+    }
+    case TIOCGSOFTCAR: {
+        KernelTermios settings{};
+        return get_kernel_termios(file, settings) != 0
+                   ? -1
+                   : put_number(argument, (settings.c_cflag & CLOCAL) != 0 ? 1 : 0);
+    }
+    case TIOCGETD:
+        return put_number(argument, N_TTY);
+    case TIOCSETD:
+        return set_discipline(file, argument);
+    case TIOCGDEV: {
+        const auto number = static_cast<unsigned>(device_number(file));
+        return put_to_program(argument, number) ? 0 : -1;
+    }
+    case TIOCGEXCL:
+        return put_number(argument, 0);
+    case TIOCEXCL:  // without effect on a superuser, whom programs of the board run as
     case TIOCNXCL:
     case TIOCSCTTY:
         return 0;
-    case TIOCGWINSZ:
-        std::memset(argument, 0, sizeof(winsize));
-        return 0;
+    case TIOCGWINSZ: {
+        const winsize none{};
+        return put_to_program(argument, none) ? 0 : -1;
+    }
+    case TIOCSWINSZ: {
+        winsize size{};
+        return get_from_program(size, argument) ? 0 : -1;
+    }
     case TIOCGPGRP:
     case TIOCSPGRP:
     case TIOCGSID:
     case TIOCNOTTY:
-        errno = ENOTTY;
-        return -1;
+        return fail(ENOTTY);
     default:
         return unsupported(file, request, caller, ENOTTY);
     }
@@ -219,12 +333,18 @@ int device_ioctl(OpenFile& file, unsigned long request, void* argument, const vo
     mark_call("ioctl");
     charge(page().charges.device);
     switch (request) {
-    case FIONBIO:
-        file.flags = (file.flags & O_ACCMODE) | (*static_cast<int*>(argument) != 0 ? O_NONBLOCK : 0);
+    case FIONBIO: {
+        int on = 0;
+        if (!get_from_program(on, argument)) return -1;
+        file.flags = (file.flags & ~O_NONBLOCK) | (on != 0 ? O_NONBLOCK : 0);
         return 0;
-    case FIOCLEX:
-    case FIONCLEX:
+    }
+    case FIOASYNC: {
+        int on = 0;
+        if (!get_from_program(on, argument)) return -1;
+        if (on != 0) note("%s: O_ASYNC (SIGIO) is not supported", file.path);
         return 0;
+    }
     default:
         break;
     }
@@ -257,8 +377,11 @@ SHIM_EXPORT int ioctl(int fd, unsigned long request, ...) noexcept {
     va_start(arguments, request);
     void* argument = va_arg(arguments, void*);
     va_end(arguments);
-    if (OpenFile* file = open_file(fd))
-        return device_ioctl(*file, request, argument, __builtin_return_address(0));
+    OpenFile* file = open_file(fd);
+    if (file != nullptr && request != FIOCLEX && request != FIONCLEX)
+        return device_ioctl(*file, static_cast<std::uint32_t>(request), argument,
+                            __builtin_return_address(0));
+    if (active() && is_link_descriptor(fd)) return fail(EBADF);
     return REAL(ioctl)(fd, request, argument);
 }
 
@@ -273,7 +396,9 @@ SHIM_EXPORT int tcgetattr(int fd, termios* settings) noexcept {
     if (file == nullptr) return REAL(tcgetattr)(fd, settings);
     NOT_A_TTY(file)
     mark_call("tcgetattr");
-    return get_termios(*file, *settings);
+    termios current;
+    if (get_termios(*file, current) != 0) return -1;
+    return put_to_program(settings, current) ? 0 : -1;
 }
 
 SHIM_EXPORT int tcsetattr(int fd, int when, const termios* settings) noexcept {
@@ -281,21 +406,26 @@ SHIM_EXPORT int tcsetattr(int fd, int when, const termios* settings) noexcept {
     if (file == nullptr) return REAL(tcsetattr)(fd, when, settings);
     NOT_A_TTY(file)
     mark_call("tcsetattr");
-    return set_termios(*file, when, *settings);
+    termios wanted;
+    if (when < TCSANOW || when > TCSAFLUSH) {
+        errno = EINVAL;
+        return -1;
+    }
+    return get_from_program(wanted, settings) ? set_termios(*file, when, wanted) : -1;
 }
 
 SHIM_EXPORT int tcflush(int fd, int which) noexcept {
     OpenFile* file = serial_port(fd);
     if (file == nullptr) return REAL(tcflush)(fd, which);
     NOT_A_TTY(file)
-    return simple(*file, wire::Op::Flush, static_cast<std::uint32_t>(which));
+    return flush(*file, static_cast<std::uint32_t>(which));
 }
 
 SHIM_EXPORT int tcflow(int fd, int action) noexcept {
     OpenFile* file = serial_port(fd);
     if (file == nullptr) return REAL(tcflow)(fd, action);
     NOT_A_TTY(file)
-    return simple(*file, wire::Op::Flow, static_cast<std::uint32_t>(action));
+    return flow(*file, static_cast<std::uint32_t>(action));
 }
 
 SHIM_EXPORT int tcdrain(int fd) {
@@ -303,17 +433,19 @@ SHIM_EXPORT int tcdrain(int fd) {
     if (file == nullptr) return REAL(tcdrain)(fd);
     NOT_A_TTY(file)
     mark_call("tcdrain");
-    wire::Request request;
-    request.op = wire::Op::Drain;
-    request.handle = file->handle;
-    return static_cast<int>(device_call(request, nullptr, 0, nullptr, 0, true));
+    return drain(*file);
 }
 
 SHIM_EXPORT int tcsendbreak(int fd, int duration) noexcept {
     OpenFile* file = serial_port(fd);
     if (file == nullptr) return REAL(tcsendbreak)(fd, duration);
     NOT_A_TTY(file)
-    return simple(*file, wire::Op::Break, 0, kBreakMicroseconds);
+    mark_call("tcsendbreak");
+    // As the C library does it: 0.25 s, or as many tenths of a second as come closest from above.
+    if (duration <= 0) return send_break(*file, kBreakMicroseconds);
+    return send_break(*file,
+                      std::min<std::uint32_t>((static_cast<std::uint32_t>(duration) + 99) / 100, kMostBreak) *
+                          100'000);
 }
 
 SHIM_EXPORT int isatty(int fd) noexcept {
@@ -329,8 +461,7 @@ SHIM_EXPORT int ttyname_r(int fd, char* name, size_t size) noexcept {
     if (file == nullptr) return REAL(ttyname_r)(fd, name, size);
     if (file->kind != OpenFile::Kind::Tty) return ENOTTY;
     if (std::strlen(file->path) >= size) return ERANGE;
-    std::strcpy(name, file->path);
-    return 0;
+    return copy_to_program(name, file->path, std::strlen(file->path) + 1) ? 0 : EFAULT;
 }
 
 SHIM_EXPORT char* ttyname(int fd) noexcept {

@@ -4,6 +4,7 @@
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <fcntl.h>
@@ -40,24 +41,16 @@ wire::Request request_for(const OpenFile& file, wire::Op op) {
 int video_ioctl(OpenFile& file, unsigned long number, void* argument) {
     const auto code = static_cast<std::uint32_t>(number);  // programs that take it for an int extend its sign
     char data[kMostIoctlData];
-    std::size_t size = _IOC_DIR(code) == _IOC_NONE ? 0 : _IOC_SIZE(code);
-    if (size > 0 && argument == nullptr) {
-        errno = EFAULT;
-        return -1;
-    }
-    size = std::min(size, sizeof data);
-    std::memcpy(data, argument, size);
+    const std::size_t size =
+        std::min(_IOC_DIR(code) == _IOC_NONE ? 0 : std::size_t{_IOC_SIZE(code)}, sizeof data);
+    if (!copy_from_program(data, argument, size)) return -1;
     std::size_t listed = 0;
-    void* list = nullptr;
+    v4l2_ext_controls controls{};
     if (has_list(code)) {
-        const auto* controls = static_cast<const v4l2_ext_controls*>(argument);
-        list = controls->controls;
-        listed = std::min<std::size_t>(controls->count, kMostControls) * sizeof(v4l2_ext_control);
-        if (listed > 0 && list == nullptr) {
-            errno = EFAULT;
-            return -1;
-        }
-        if (listed > 0) std::memcpy(data + size, list, listed);
+        std::memcpy(&controls, data, sizeof controls);
+        listed = std::min<std::size_t>(controls.count, kMostControls) * sizeof(v4l2_ext_control);
+        listed = std::min(listed, sizeof data - size);
+        if (!copy_from_program(data + size, controls.controls, listed)) return -1;
     }
     wire::Request request = request_for(file, wire::Op::Ioctl);
     request.a = code;
@@ -68,11 +61,11 @@ int video_ioctl(OpenFile& file, unsigned long number, void* argument) {
     const int error = errno;
     if (received < size) return result;  // a signal came first
     if (has_list(code)) {                // the program's own pointer stays
-        auto* controls = static_cast<v4l2_ext_controls*>(argument);
-        controls->error_idx = reinterpret_cast<const v4l2_ext_controls*>(data)->error_idx;
-        if (listed > 0) std::memcpy(list, data + size, listed);
-    } else if ((_IOC_DIR(code) & _IOC_READ) != 0) {
-        std::memcpy(argument, data, size);
+        controls.error_idx = reinterpret_cast<const v4l2_ext_controls*>(data)->error_idx;
+        if (!put_to_program(argument, controls) || !copy_to_program(controls.controls, data + size, listed))
+            return -1;
+    } else if ((_IOC_DIR(code) & _IOC_READ) != 0 && !copy_to_program(argument, data, size)) {
+        return -1;
     }
     errno = error;
     return result;
@@ -88,10 +81,10 @@ std::int64_t read_video(OpenFile& file, void* buffer, std::size_t size) {
     const auto length = static_cast<std::size_t>(place - page_start) + static_cast<std::size_t>(count);
     void* frame = map_shared(nullptr, length, PROT_READ, MAP_SHARED, page_start);
     if (frame == MAP_FAILED) return -1;
-    std::memcpy(buffer, static_cast<const char*>(frame) + (place - page_start),
-                static_cast<std::size_t>(count));
+    const bool copied = copy_to_program(buffer, static_cast<const char*>(frame) + (place - page_start),
+                                        static_cast<std::size_t>(count));
     host_call(SYS_munmap, reinterpret_cast<long>(frame), static_cast<long>(length));
-    return count;
+    return copied ? count : -1;
 }
 
 namespace {

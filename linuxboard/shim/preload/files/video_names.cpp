@@ -1,6 +1,7 @@
 #include "linuxboard/shim/preload/files/video_names.h"
 
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <sys/mman.h>
@@ -24,7 +25,7 @@ int video_minor(const char* path) {
 
 int open_video_uevent(const char* path) {
     constexpr char kStart[] = "/sys/dev/char/81:";
-    if (path == nullptr || std::strncmp(path, kStart, sizeof kStart - 1) != 0 || !is_linked()) return -1;
+    if (!is_linked() || !is_text(path) || std::strncmp(path, kStart, sizeof kStart - 1) != 0) return -1;
     for (const wire::DeviceName& device : page().devices) {
         if (device.kind != wire::DeviceKind::Video) continue;
         const int number = video_minor(device.path);
@@ -46,22 +47,3 @@ int open_video_uevent(const char* path) {
 }
 
 }  // namespace puckloop::shim
-
-using namespace puckloop::shim;
-
-namespace {
-template <typename Status>
-int as_camera(int fd, Status* status, int result) {
-    const OpenFile* file = result == 0 ? open_file(fd) : nullptr;
-    if (file != nullptr && file->kind == OpenFile::Kind::Video)
-        status->st_rdev = makedev(kVideoMajor, video_minor(file->path));
-    return result;
-}
-}  // namespace
-
-SHIM_EXPORT int fstat(int fd, struct stat* status) noexcept {
-    return as_camera(fd, status, REAL(fstat)(fd, status));
-}
-SHIM_EXPORT int fstat64(int fd, struct stat64* status) noexcept {
-    return as_camera(fd, status, REAL(fstat64)(fd, status));
-}

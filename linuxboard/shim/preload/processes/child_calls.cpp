@@ -32,7 +32,7 @@ constexpr int kBorn = -2;  ///< of in_between(): this is the new process
 constexpr int kNoProcess = 255;
 
 int bear(void*) {
-    const pid_t born = _Fork();
+    const pid_t born = REAL(_Fork)();
     if (born == 0) return kBorn;
     return born < 0 ? kNoProcess : 0;
 }
@@ -56,6 +56,7 @@ struct Spawn {
 int spawn_there(void* context) {
     const Spawn& spawn = *static_cast<const Spawn*>(context);
     place_link(spawn.link);
+    go_passive();  // the C library's own dup2() for the new process is the host's
     pid_t ignored = 0;
     return REAL(posix_spawn)(&ignored, spawn.file, spawn.actions, spawn.attributes, spawn.arguments,
                              spawn.environment);
@@ -74,12 +75,12 @@ constexpr int kMostOpened = 64;
 Opened opened[kMostOpened];
 }  // namespace
 
-SHIM_EXPORT pid_t fork() noexcept {
-    if (!active()) return REAL(fork)();
+namespace {
+pid_t make_copy(bool with_handlers) {
     mark_call("fork");
     Birth birth;
     if (!ask_for_process(birth, {})) return -1;
-    const int status = in_between(bear, nullptr, true);
+    const int status = in_between(bear, nullptr, with_handlers);
     if (status == kBorn) {
         begin_child(birth);
         return 0;
@@ -87,6 +88,17 @@ SHIM_EXPORT pid_t fork() noexcept {
     const pid_t child = report_birth(birth, status == 0);
     if (child < 0) errno = EAGAIN;
     return child;
+}
+}  // namespace
+
+namespace puckloop::shim {
+pid_t fork_plainly() {
+    return make_copy(false);
+}
+}  // namespace puckloop::shim
+
+SHIM_EXPORT pid_t fork() noexcept {
+    return active() ? make_copy(true) : REAL(fork)();
 }
 
 SHIM_EXPORT pid_t vfork() noexcept {
@@ -193,7 +205,7 @@ SHIM_EXPORT FILE* popen(const char* command, const char* mode) {
         return nullptr;
     }
     if (std::strchr(mode, 'e') == nullptr) fcntl(mine, F_SETFD, 0);
-    *entry = {open_stream(mine, reads ? "r" : "w"), child};
+    *entry = {fdopen(mine, reads ? "r" : "w"), child};
     return entry->file;
 }
 

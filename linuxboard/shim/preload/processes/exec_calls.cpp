@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
@@ -80,10 +81,25 @@ bool lists(const char* libraries, const char* file) {
     return false;
 }
 
+/// A list of texts with an end; none at all is an empty one.
+bool is_list(char* const* texts) {
+    char* text = nullptr;
+    for (; texts != nullptr; ++texts) {
+        if (!get_from_program(text, texts)) return false;
+        if (text == nullptr) return true;
+        if (readable_bytes(text, 1) == 0) return false;
+    }
+    return true;
+}
+
 int run_program(const char* path, char* const* arguments, char* const* environment) {
     if (!active()) return REAL(execve)(path, arguments, environment);
     mark_call("execve");
     charge(page().charges.thread);
+    if (!is_text(path) || !is_list(environment)) {
+        errno = EFAULT;
+        return -1;
+    }
     can_be_conducted(path, false);
     const std::string left = leave(true);
     wire::Request request;
@@ -99,6 +115,10 @@ int run_program(const char* path, char* const* arguments, char* const* environme
 
 int run_found(const char* file, char* const* arguments, char* const* environment) {
     char room[PATH_MAX];
+    if (!is_text(file)) {
+        errno = EFAULT;
+        return -1;
+    }
     const char* path = search_path(file, room);
     const int result = run_program(path, arguments, environment);
     if (errno != ENOEXEC) return result;

@@ -2,8 +2,10 @@
 // random numbers, so they count from a fixed one; calls that take one accept those of the program's
 // processes.
 
+#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
@@ -71,11 +73,16 @@ SHIM_EXPORT pid_t getppid() noexcept {
     return own().parent == wire::kNoParent ? kInit : page().processes[own().parent].number;
 }
 
-SHIM_EXPORT pid_t gettid() noexcept {
-    if (!active()) return REAL(gettid)();
-    const auto index = static_cast<pid_t>(self()->index);
+namespace puckloop::shim {
+pid_t thread_number(std::uint32_t index) {
     return index == 0 ? own().number
-                      : kFirstThread + kThreadsOfProcess * (own().number - wire::kFirstProcess) + index;
+                      : kFirstThread + kThreadsOfProcess * (own().number - wire::kFirstProcess) +
+                            static_cast<pid_t>(index);
+}
+}  // namespace puckloop::shim
+
+SHIM_EXPORT pid_t gettid() noexcept {
+    return active() ? thread_number(self()->index) : REAL(gettid)();
 }
 
 SHIM_EXPORT int kill(pid_t process, int number) noexcept {
@@ -161,8 +168,7 @@ SHIM_EXPORT int gethostname(char* name, size_t size) noexcept {
         errno = ENAMETOOLONG;
         return -1;
     }
-    std::strcpy(name, host);
-    return 0;
+    return copy_to_program(name, host, std::strlen(host) + 1) ? 0 : -1;
 }
 
 SHIM_EXPORT int uname(utsname* names) noexcept {

@@ -64,7 +64,7 @@ bool ask_for_process(Birth& birth, const std::string& left) {
 int in_between(int (*work)(void*), void* context, bool with_handlers) {
     const QuietChildren quiet;
     making = true;
-    const pid_t between = with_handlers ? REAL(fork)() : _Fork();
+    const pid_t between = with_handlers ? REAL(fork)() : REAL(_Fork)();
     if (between == 0) {
         quiet.restore();
         const int status = work(context);

@@ -25,6 +25,14 @@ int in_between(int (*work)(void*), void* context, bool with_handlers);
 /// Reports to the node whether the new process is there; its number, or -1.
 pid_t report_birth(const Birth& birth, bool made);
 
+/// child_calls.cpp: fork() without the handlers of pthread_atfork().
+pid_t fork_plainly();
+/// clone_calls.cpp: a process as clone() makes it; ends this one if it cannot be conducted. `name`: the call.
+pid_t clone_process(const char* name, std::uint64_t flags, int signal, void* stack, void* parent_number,
+                    void* child_number);
+/// Ends this process with one line and status 126, because of a call that would escape simulated time.
+[[noreturn]] void refuse_call(const char* name, const char* why);
+
 /// The process numbers of ended children, as waitpid() gives them; see wait_calls.cpp.
 pid_t await_child(pid_t which, int* status, int options);
 

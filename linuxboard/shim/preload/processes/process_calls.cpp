@@ -1,5 +1,4 @@
-// The process as a whole: begin, end, random numbers; and futexes, which reach the
-// kernel through syscall().
+// The process as a whole: begin, end, random numbers.
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
@@ -8,9 +7,7 @@
 #include "linuxboard/shim/preload/processes/make_process.h"
 #include "linuxboard/shim/preload/real.h"
 
-#include <linux/futex.h>
 #include <sys/random.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -49,7 +46,6 @@ void begin_process(Thread* main_thread) {
     // What a program has said is in the log even if it is killed.
     if (std::getenv("_STDBUF_O") == nullptr) std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     take_over(say_hello(false));
-    adopt_standard_streams();
 }
 
 }  // namespace puckloop::shim
@@ -66,14 +62,17 @@ SHIM_EXPORT void _Exit(int status) noexcept {
 
 SHIM_EXPORT ssize_t getrandom(void* buffer, size_t size, unsigned flags) {
     if (!active()) return REAL(getrandom)(buffer, size, flags);
-    random_bytes(buffer, size);
-    return static_cast<ssize_t>(size);
+    return read_random(buffer, size);
 }
 
 SHIM_EXPORT int getentropy(void* buffer, size_t size) {
     if (!active()) return REAL(getentropy)(buffer, size);
-    random_bytes(buffer, size);
-    return 0;
+    constexpr size_t kMost = 256;
+    if (size > kMost) {
+        errno = EIO;
+        return -1;
+    }
+    return read_random(buffer, size) < 0 ? -1 : 0;
 }
 
 // std::random_device asks the processor where it can; this is its way to a number in libstdc++.
@@ -85,82 +84,4 @@ SHIM_EXPORT unsigned _ZNSt13random_device9_M_getvalEv(void*) {
         REAL(getrandom)(&value, sizeof value, 0);
     }
     return value;
-}
-
-namespace {
-/// FUTEX_WAIT and FUTEX_WAKE among the program's threads; false if it is another operation.
-bool futex(long* result, std::uint32_t* word, int operation, std::uint32_t value, const timespec* timeout,
-           std::uint32_t bits) {
-    const int command = operation & FUTEX_CMD_MASK;
-    const bool waits = command == FUTEX_WAIT || command == FUTEX_WAIT_BITSET;
-    if (command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET) {
-        const int count = static_cast<int>(std::min<std::uint32_t>(value, INT_MAX));
-        *result = wake(word, count, command == FUTEX_WAKE_BITSET ? bits : ~std::uint64_t{0});
-        charge(page().charges.sync);
-        return true;
-    }
-    if (!waits) return false;
-    mark_call("futex");
-    charge(page().charges.sync);
-    *result = -1;
-    if (__atomic_load_n(word, __ATOMIC_SEQ_CST) != value) {
-        errno = EAGAIN;
-        return true;
-    }
-    WaitOptions options;
-    options.interruptible = true;
-    if (command == FUTEX_WAIT_BITSET) options.bits = bits;
-    if (timeout != nullptr) {
-        const clockid_t clock = (operation & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC;
-        options.deadline =
-            command == FUTEX_WAIT ? time_after(from_timespec(*timeout)) : absolute_deadline(clock, *timeout);
-    }
-    switch (park_shared(word, options, (operation & FUTEX_PRIVATE_FLAG) == 0)) {
-    case Wake::Timeout:
-        errno = ETIMEDOUT;
-        break;
-    case Wake::Signal:
-        errno = EINTR;
-        break;
-    default:
-        *result = 0;
-        break;
-    }
-    return true;
-}
-}  // namespace
-
-SHIM_EXPORT long syscall(long number, ...) noexcept {
-    std::va_list list;
-    va_start(list, number);
-    long a[6];
-    for (long& argument : a)
-        argument = va_arg(list, long);
-    va_end(list);
-    if (active()) {
-        long result = 0;
-        switch (number) {
-        case SYS_futex:
-            if (futex(&result, reinterpret_cast<std::uint32_t*>(a[0]), static_cast<int>(a[1]),
-                      static_cast<std::uint32_t>(a[2]), reinterpret_cast<const timespec*>(a[3]),
-                      static_cast<std::uint32_t>(a[5])))
-                return result;
-            note("futex operation 0x%lx is left to the host", a[1]);
-            break;
-        case SYS_clock_gettime:
-            return clock_gettime(static_cast<clockid_t>(a[0]), reinterpret_cast<timespec*>(a[1]));
-        case SYS_getrandom:
-            random_bytes(reinterpret_cast<void*>(a[0]), static_cast<std::size_t>(a[1]));
-            return a[1];
-        case SYS_read:
-            return read(static_cast<int>(a[0]), reinterpret_cast<void*>(a[1]),
-                        static_cast<std::size_t>(a[2]));
-        case SYS_write:
-            return write(static_cast<int>(a[0]), reinterpret_cast<const void*>(a[1]),
-                         static_cast<std::size_t>(a[2]));
-        default:
-            break;
-        }
-    }
-    return REAL(syscall)(number, a[0], a[1], a[2], a[3], a[4], a[5]);
 }

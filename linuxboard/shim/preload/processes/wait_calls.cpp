@@ -3,6 +3,7 @@
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
@@ -42,7 +43,7 @@ Found find_children(pid_t which) {
 }
 }  // namespace
 
-pid_t await_child(pid_t which, int* status, int options) {
+pid_t await_child(pid_t which, int* status, int options, Time& used) {
     mark_call("waitpid");
     pthread_testcancel();
     charge(page().charges.device);
@@ -51,14 +52,17 @@ pid_t await_child(pid_t which, int* status, int options) {
         const Found found = find_children(which);
         if (found.ended != nullptr) {
             const pid_t number = found.ended->number;
-            if (status != nullptr) *status = found.ended->status;
+            used = found.ended->computed;
+            const int ended_with = found.ended->status;
+            if ((options & WNOWAIT) == 0)
+                own().children_computed += found.ended->computed + found.ended->children_computed;
             if ((options & WNOWAIT) == 0) {
                 wire::Request request;
                 request.op = wire::Op::Reap;
                 request.a = static_cast<std::uint32_t>(found.ended - page().processes);
                 device_call(request);
             }
-            return number;
+            return status == nullptr || put_to_program(status, ended_with) ? number : -1;
         }
         if (!found.any) {
             errno = ECHILD;
@@ -76,6 +80,11 @@ pid_t await_child(pid_t which, int* status, int options) {
     }
 }
 
+pid_t await_child(pid_t which, int* status, int options) {
+    Time ignored = 0;
+    return await_child(which, status, options, ignored);
+}
+
 }  // namespace puckloop::shim
 
 SHIM_EXPORT pid_t waitpid(pid_t which, int* status, int options) {
@@ -88,8 +97,12 @@ SHIM_EXPORT pid_t wait(int* status) {
 
 SHIM_EXPORT pid_t wait4(pid_t which, int* status, int options, rusage* usage) noexcept {
     if (!active()) return REAL(wait4)(which, status, options, usage);
-    if (usage != nullptr) *usage = {};
-    return await_child(which, status, options);
+    Time used = 0;
+    const pid_t child = await_child(which, status, options, used);
+    rusage result{};
+    result.ru_stime = {used / kSecond, used % kSecond / kMicrosecond};
+    if (child > 0 && usage != nullptr && !put_to_program(usage, result)) return -1;
+    return child;
 }
 
 SHIM_EXPORT pid_t wait3(int* status, int options, rusage* usage) noexcept {
@@ -97,8 +110,8 @@ SHIM_EXPORT pid_t wait3(int* status, int options, rusage* usage) noexcept {
     return wait4(-1, status, options, usage);
 }
 
-SHIM_EXPORT int waitid(idtype_t kind, id_t id, siginfo_t* info, int options) {
-    if (!active()) return REAL(waitid)(kind, id, info, options);
+SHIM_EXPORT int waitid(idtype_t kind, id_t id, siginfo_t* theirs, int options) {
+    if (!active()) return REAL(waitid)(kind, id, theirs, options);
     if (kind != P_ALL && kind != P_PID && kind != P_PGID) {
         note("waitid: process descriptors are not supported");
         errno = EINVAL;
@@ -109,12 +122,13 @@ SHIM_EXPORT int waitid(idtype_t kind, id_t id, siginfo_t* info, int options) {
     int status = 0;
     const pid_t child = await_child(which, &status, options);
     if (child < 0) return -1;
-    if (info == nullptr) return 0;
-    *info = {};
-    if (child == 0) return 0;
+    if (theirs == nullptr) return 0;
+    siginfo_t made{};
+    siginfo_t* const info = &made;
+    if (child == 0) return put_to_program(theirs, made) ? 0 : -1;
     info->si_signo = SIGCHLD;
     info->si_pid = child;
     info->si_code = WIFEXITED(status) ? CLD_EXITED : WCOREDUMP(status) ? CLD_DUMPED : CLD_KILLED;
     info->si_status = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
-    return 0;
+    return put_to_program(theirs, made) ? 0 : -1;
 }

@@ -3,7 +3,9 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/libc_hooks.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/time/ahead.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
@@ -101,7 +103,10 @@ void complete(const wire::Completion& completion, const char* data) {
     thread->result = completion.result;
     thread->error = completion.error;
     thread->received = std::min<std::size_t>(completion.length, thread->capacity);
-    if (thread->received > 0) std::memcpy(thread->out, data, thread->received);
+    if (!copy_to_program(thread->out, data, thread->received)) {
+        thread->result = -1;
+        thread->error = EFAULT;
+    }
     make_ready(*thread, completion.time, Wake::Device);
 }
 
@@ -336,6 +341,8 @@ void yield_token() {
 void charge(Time cost) {
     Thread* me = current;
     clock_now += cost;
+    me->computed += cost;
+    own().computed += cost;
     follow_wall_clock();
     publish();
     if (clock_now >= clock_limit) {
@@ -520,6 +527,7 @@ void only_this_thread() {
     me->index = 0;
     me->state = Thread::State::Running;
     me->awaited_signals = nullptr;
+    me->computed = 0;
     pending_signals = 0;
     in_node_call = false;
     conducted = true;
@@ -544,6 +552,8 @@ std::string say_hello(bool forked) {
 /// Runs before the program's own initialisers, on its main thread.
 __attribute__((constructor)) static void begin() {
     if (!connect_link()) return;
+    hook_libc();
+    guard_memory();
     Thread* main_thread = new_thread();
     main_thread->handle = pthread_self();
     main_thread->has_handle = true;

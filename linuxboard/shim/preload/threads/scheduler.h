@@ -38,6 +38,7 @@ struct Thread {
     std::uint32_t index = 0;
     State state = State::Ready;
     Time ready_since = 0;
+    Time computed = 0;  ///< processor time: what its calls were charged
     const void* key = nullptr;
     std::uint64_t bits = ~std::uint64_t{0};  ///< of FUTEX_WAIT_BITSET
     Time deadline = kNever;

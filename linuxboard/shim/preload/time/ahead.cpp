@@ -1,5 +1,7 @@
 #include "linuxboard/shim/preload/time/ahead.h"
 
+#include "linuxboard/shim/preload/program_memory.h"
+
 #include <poll.h>
 
 #include <algorithm>
@@ -56,10 +58,11 @@ bool read_here(const wire::Request& request, char* out, std::size_t capacity, st
     if (request.nonblocking == 0 && count < minimum) return false;
     if (count > tty.shown || !has_room_for_done()) return false;
     note_done({now, count, 0});
-    std::memcpy(out, tty.input + tty.first, count);
+    const bool copied = copy_to_program(out, tty.input + tty.first, count);
     tty.first += count;
     tty.shown -= count;
     tty.readable -= count;
+    if (!copied) return nothing(EFAULT);
     answer.result = count;
     answer.received = count;
     return true;

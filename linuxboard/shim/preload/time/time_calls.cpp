@@ -3,12 +3,12 @@
 
 #include "base/random.h"
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <sys/time.h>
-#include <sys/timeb.h>
-#include <sys/times.h>
+#include <sys/timex.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -73,8 +73,24 @@ bool is_valid(const timespec& time) {
     return time.tv_nsec >= 0 && time.tv_nsec < kNanosecondsPerSecond;
 }
 
+int fail(int error) {
+    errno = error;
+    return -1;
+}
+
+/// One that Linux has, and no processor's.
+bool is_clock(clockid_t clock) {
+    constexpr clockid_t kRemoved = 10;  // CLOCK_SGI_CYCLE
+    return clock >= 0 && clock <= CLOCK_TAI && clock != kRemoved;
+}
+
+int refuse_to_set() {
+    note("the program sets the clock of its computer, which is not supported");
+    return fail(EPERM);
+}
+
 /// When a sleep that was to end at `deadline` does. Nothing is drawn without jitter.
-static Time woken(Time deadline) {
+Time woken(Time deadline) {
     const wire::Oversleep& late = page().oversleep;
     Time more = late.mean;
     if (late.jitter > 0) {
@@ -108,27 +124,46 @@ SHIM_EXPORT int clock_gettime(clockid_t clock, timespec* time) noexcept {
     if (!active()) return REAL(clock_gettime)(clock, time);
     mark_call("clock_gettime");
     charge(page().charges.clock);
-    // Processor time: what the calls of the program have cost is not kept apart from waiting.
-    *time = timespec_of_nanoseconds(clock_nanoseconds(clock));
-    return 0;
+    Time computed = 0;
+    if (is_processor_clock(clock)) {
+        if (!processor_time(clock, computed)) return fail(EINVAL);
+        return put_to_program(time, to_timespec(computed)) ? 0 : -1;
+    }
+    if (!is_clock(clock)) return fail(EINVAL);
+    return put_to_program(time, timespec_of_nanoseconds(clock_nanoseconds(clock))) ? 0 : -1;
 }
 
 SHIM_EXPORT int clock_getres(clockid_t clock, timespec* resolution) noexcept {
     if (!active()) return REAL(clock_getres)(clock, resolution);
-    if (resolution != nullptr) *resolution = timespec{0, 1};
-    return 0;
+    Time computed = 0;
+    if (is_processor_clock(clock) ? !processor_time(clock, computed) : !is_clock(clock)) return fail(EINVAL);
+    return resolution == nullptr || put_to_program(resolution, timespec{0, 1}) ? 0 : -1;
+}
+
+// The clock of the board is the scenario's, that of the host is none of the program's business.
+SHIM_EXPORT int clock_settime(clockid_t clock, const timespec* time) noexcept {
+    return active() ? refuse_to_set() : REAL(clock_settime)(clock, time);
+}
+SHIM_EXPORT int settimeofday(const timeval* time, const struct timezone* zone) noexcept {
+    return active() ? refuse_to_set() : REAL(settimeofday)(time, zone);
+}
+SHIM_EXPORT int adjtime(const timeval* by, timeval* before) noexcept {
+    return active() ? refuse_to_set() : REAL(adjtime)(by, before);
+}
+SHIM_EXPORT int adjtimex(timex* settings) noexcept {
+    return active() ? refuse_to_set() : REAL(adjtimex)(settings);
+}
+SHIM_EXPORT int clock_adjtime(clockid_t clock, timex* settings) noexcept {
+    return active() ? refuse_to_set() : REAL(clock_adjtime)(clock, settings);
 }
 
 SHIM_EXPORT int gettimeofday(timeval* time, void* zone) noexcept {
     if (!active()) return REAL(gettimeofday)(time, zone);
     mark_call("gettimeofday");
     charge(page().charges.clock);
-    if (time != nullptr) {
-        const timespec wall = timespec_of_nanoseconds(clock_nanoseconds(CLOCK_REALTIME));
-        time->tv_sec = wall.tv_sec;
-        time->tv_usec = wall.tv_nsec / 1000;
-    }
-    return 0;
+    if (time == nullptr) return 0;
+    const timespec wall = timespec_of_nanoseconds(clock_nanoseconds(CLOCK_REALTIME));
+    return put_to_program(time, timeval{wall.tv_sec, wall.tv_nsec / 1000}) ? 0 : -1;
 }
 
 SHIM_EXPORT time_t time(time_t* out) noexcept {
@@ -136,8 +171,7 @@ SHIM_EXPORT time_t time(time_t* out) noexcept {
     mark_call("time");
     charge(page().charges.clock);
     const time_t seconds = clock_nanoseconds(CLOCK_REALTIME) / kNanosecondsPerSecond;
-    if (out != nullptr) *out = seconds;
-    return seconds;
+    return out != nullptr && !put_to_program(out, seconds) ? -1 : seconds;
 }
 
 SHIM_EXPORT int timespec_get(timespec* time, int base) noexcept {
@@ -146,28 +180,21 @@ SHIM_EXPORT int timespec_get(timespec* time, int base) noexcept {
     return base;
 }
 
-SHIM_EXPORT clock_t clock() noexcept {
-    if (!active()) return REAL(clock)();
-    charge(page().charges.clock);
-    return now() / (kSecond / CLOCKS_PER_SEC);
-}
-
-SHIM_EXPORT clock_t times(tms* buffer) noexcept {
-    if (!active()) return REAL(times)(buffer);
-    charge(page().charges.clock);
-    const clock_t ticks = clock_nanoseconds(CLOCK_MONOTONIC) / (kNanosecondsPerSecond / sysconf(_SC_CLK_TCK));
-    if (buffer != nullptr) *buffer = tms{ticks, 0, 0, 0};
-    return ticks;
-}
-
 SHIM_EXPORT int clock_nanosleep(clockid_t clock, int flags, const timespec* request, timespec* remain) {
     if (!active()) return REAL(clock_nanosleep)(clock, flags, request, remain);
-    if (!is_valid(*request)) return EINVAL;
+    if (clock == CLOCK_THREAD_CPUTIME_ID || (!is_processor_clock(clock) && !is_clock(clock))) return EINVAL;
+    if (is_processor_clock(clock)) {
+        note("clock_nanosleep: sleeping until so much processor time is used is not supported");
+        return ENOTSUP;
+    }
+    timespec wanted{};
+    if (!get_from_program(wanted, request)) return EFAULT;
+    if (!is_valid(wanted) || wanted.tv_sec < 0) return EINVAL;
     const bool is_absolute = (flags & TIMER_ABSTIME) != 0;
-    const Time deadline =
-        is_absolute ? absolute_deadline(clock, *request) : time_after(from_timespec(*request));
+    const Time deadline = is_absolute ? absolute_deadline(clock, wanted) : time_after(from_timespec(wanted));
     if (!sleep_until(deadline)) return 0;
-    if (!is_absolute && remain != nullptr) *remain = to_timespec(deadline > now() ? deadline - now() : 0);
+    const timespec left = to_timespec(deadline > now() ? deadline - now() : 0);
+    if (!is_absolute && remain != nullptr && !put_to_program(remain, left)) return EFAULT;
     return EINTR;
 }
 

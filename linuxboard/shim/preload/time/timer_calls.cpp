@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
@@ -17,9 +18,6 @@
 using namespace puckloop::shim;
 
 namespace {
-Time from_timeval(const timeval& time) {
-    return time.tv_sec * kSecond + time.tv_usec * kMicrosecond;
-}
 timeval to_timeval(Time time) {
     return {time / kSecond, time % kSecond / kMicrosecond};
 }
@@ -30,13 +28,23 @@ Time left_of(const Timer& timer) {
 itimerspec read_timer(const Timer& timer) {
     return {to_timespec(timer.interval), to_timespec(left_of(timer))};
 }
-void set_timer(Timer& timer, bool absolute, const itimerspec& value, itimerspec* old) {
-    if (old != nullptr) *old = read_timer(timer);
+/// timer_settime() and timerfd_settime(): 0, or -1 and errno.
+int set_timer(Timer* timer, bool absolute, const itimerspec* theirs, itimerspec* old) {
+    itimerspec value{};
+    if (!get_from_program(value, theirs)) return -1;
+    const bool valid = is_valid(value.it_value) && is_valid(value.it_interval) &&
+                       value.it_value.tv_sec >= 0 && value.it_interval.tv_sec >= 0;
+    if (!valid || !is_timer(timer)) {
+        errno = EINVAL;
+        return -1;
+    }
+    if (old != nullptr && !put_to_program(old, read_timer(*timer))) return -1;
     const Time first = from_timespec(value.it_value);
-    timer.interval = from_timespec(value.it_interval);
-    timer.deadline = first == 0 ? kNever
-                     : absolute ? absolute_deadline(timer.clock, value.it_value)
-                                : time_after(first);
+    timer->interval = from_timespec(value.it_interval);
+    timer->deadline = first == 0 ? kNever
+                      : absolute ? absolute_deadline(timer->clock, value.it_value)
+                                 : time_after(first);
+    return 0;
 }
 
 /// Waits for one of `set`; the signal's number, or 0 at the deadline.
@@ -81,23 +89,36 @@ SHIM_EXPORT useconds_t ualarm(useconds_t microseconds, useconds_t interval) noex
 
 SHIM_EXPORT int getitimer(__itimer_which_t which, itimerval* value) noexcept {
     if (!active() || which != ITIMER_REAL) return REAL(getitimer)(which, value);
-    *value = {to_timeval(real_timer().interval), to_timeval(left_of(real_timer()))};
-    return 0;
+    const itimerval current{to_timeval(real_timer().interval), to_timeval(left_of(real_timer()))};
+    return put_to_program(value, current) ? 0 : -1;
 }
 
 SHIM_EXPORT int setitimer(__itimer_which_t which, const itimerval* value, itimerval* old) noexcept {
     if (!active()) return REAL(setitimer)(which, value, old);
     if (which != ITIMER_REAL) {
-        note("setitimer: timers of processor time are not supported");
+        if (which == ITIMER_VIRTUAL || which == ITIMER_PROF)
+            note("setitimer: timers of processor time are not supported");
         errno = EINVAL;
         return -1;
     }
     charge(page().charges.clock);
-    if (old != nullptr) getitimer(which, old);
+    itimerval given{};  // Linux takes no value for one of zeros
+    if (value != nullptr && !get_from_program(given, value)) return -1;
+    const auto is_time = [](const timeval& time) {
+        return time.tv_sec >= 0 && time.tv_usec >= 0 && time.tv_usec < 1'000'000;
+    };
+    if (!is_time(given.it_value) || !is_time(given.it_interval)) {
+        errno = EINVAL;
+        return -1;
+    }
+    if (old != nullptr && getitimer(which, old) != 0) return -1;
     Timer& timer = real_timer();
     timer.signal = SIGALRM;
-    timer.interval = from_timeval(value->it_interval);
-    const Time first = from_timeval(value->it_value);
+    const auto time_of = [](const timeval& time) {
+        return from_timespec({time.tv_sec, time.tv_usec * 1000});
+    };
+    timer.interval = time_of(given.it_interval);
+    const Time first = time_of(given.it_value);
     timer.deadline = first == 0 ? kNever : time_after(first);
     return 0;
 }
@@ -105,6 +126,14 @@ SHIM_EXPORT int setitimer(__itimer_which_t which, const itimerval* value, itimer
 SHIM_EXPORT int timer_create(clockid_t clock, sigevent* event, timer_t* id) noexcept {
     if (!active()) return REAL(timer_create)(clock, event, id);
     charge(page().charges.clock);
+    sigevent given{};
+    if (event != nullptr && !get_from_program(given, event)) return -1;
+    if (event != nullptr) event = &given;
+    if (is_processor_clock(clock)) {
+        note("timer_create: timers of processor time are not supported");
+        errno = ENOTSUP;
+        return -1;
+    }
     if (event != nullptr && event->sigev_notify != SIGEV_SIGNAL && event->sigev_notify != SIGEV_NONE) {
         note(
             "timer_create: timers that start threads are not supported (signals, setitimer and timerfd are)");
@@ -118,29 +147,31 @@ SHIM_EXPORT int timer_create(clockid_t clock, sigevent* event, timer_t* id) noex
     }
     timer->clock = clock;
     timer->signal = event == nullptr ? SIGALRM : event->sigev_notify == SIGEV_SIGNAL ? event->sigev_signo : 0;
-    *id = timer;
-    return 0;
+    if (put_to_program(id, static_cast<timer_t>(timer))) return 0;
+    *timer = {};
+    return -1;
 }
 
 SHIM_EXPORT int timer_settime(timer_t id, int flags, const itimerspec* value, itimerspec* old) noexcept {
     if (!active()) return REAL(timer_settime)(id, flags, value, old);
     charge(page().charges.clock);
-    set_timer(*static_cast<Timer*>(id), (flags & TIMER_ABSTIME) != 0, *value, old);
-    return 0;
+    return set_timer(static_cast<Timer*>(id), (flags & TIMER_ABSTIME) != 0, value, old);
 }
 
 SHIM_EXPORT int timer_gettime(timer_t id, itimerspec* value) noexcept {
     if (!active()) return REAL(timer_gettime)(id, value);
-    *value = read_timer(*static_cast<const Timer*>(id));
-    return 0;
+    if (!is_timer(id)) return -1;
+    return put_to_program(value, read_timer(*static_cast<const Timer*>(id))) ? 0 : -1;
 }
 
 SHIM_EXPORT int timer_getoverrun(timer_t id) noexcept {
-    return active() ? 0 : REAL(timer_getoverrun)(id);
+    if (!active()) return REAL(timer_getoverrun)(id);
+    return is_timer(id) ? 0 : -1;
 }
 
 SHIM_EXPORT int timer_delete(timer_t id) noexcept {
     if (!active()) return REAL(timer_delete)(id);
+    if (!is_timer(id)) return -1;
     *static_cast<Timer*>(id) = {};
     return 0;
 }
@@ -165,16 +196,14 @@ SHIM_EXPORT int timerfd_create(clockid_t clock, int flags) noexcept {
 SHIM_EXPORT int timerfd_gettime(int fd, itimerspec* value) noexcept {
     const Timer* timer = active() ? timer_of(fd) : nullptr;
     if (timer == nullptr) return REAL(timerfd_gettime)(fd, value);
-    *value = read_timer(*timer);
-    return 0;
+    return put_to_program(value, read_timer(*timer)) ? 0 : -1;
 }
 
 SHIM_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itimerspec* old) noexcept {
     Timer* timer = active() ? timer_of(fd) : nullptr;
     if (timer == nullptr) return REAL(timerfd_settime)(fd, flags, value, old);
     charge(page().charges.device);
-    set_timer(*timer, (flags & TFD_TIMER_ABSTIME) != 0, *value, old);
-    return 0;
+    return set_timer(timer, (flags & TFD_TIMER_ABSTIME) != 0, value, old);
 }
 
 SHIM_EXPORT int pause() {

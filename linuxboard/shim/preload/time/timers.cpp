@@ -6,6 +6,7 @@
 #include <sys/syscall.h>
 
 #include <algorithm>
+#include <cerrno>
 
 namespace puckloop::shim {
 
@@ -31,9 +32,16 @@ Timer* new_timer(int fd) {
 
 Timer* timer_of(int fd) {
     for (int i = 1; i < kMostTimers; ++i) {
-        if (timers[i].used && timers[i].fd == fd) return &timers[i];
+        if (timers[i].used && fd >= 0 && timers[i].fd == fd) return &timers[i];
     }
     return nullptr;
+}
+
+bool is_timer(const void* timer) {
+    for (int i = 1; i < kMostTimers; ++i)
+        if (timer == &timers[i] && timers[i].used) return true;
+    errno = EINVAL;
+    return false;
 }
 
 void drop_timer(int fd) {

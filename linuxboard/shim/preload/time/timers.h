@@ -19,6 +19,8 @@ Timer& real_timer();
 /// A new timer for a descriptor; nullptr if there are too many.
 Timer* new_timer(int fd);
 Timer* timer_of(int fd);
+/// Whether it is one that is used; errno EINVAL if not.
+bool is_timer(const void* timer);
 void drop_timer(int fd);
 /// In a forked child: it has none.
 void drop_all_timers();

@@ -1,0 +1,14 @@
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <sys/stat.h>
+
+namespace puckloop::shim {
+
+bool is_channel(int fd) {
+    struct stat status {};
+    if (!active() || REAL(fstat)(fd, &status) != 0) return false;
+    return S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode);
+}
+
+}  // namespace puckloop::shim

@@ -1,0 +1,185 @@
+/* Tries to leave simulated time or to harm the run, in the way its argument names. */
+#define _GNU_SOURCE
+#include "serial.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/sched.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdint.h>
+#include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/times.h>
+#include <sys/wait.h>
+#include <time.h>
+
+extern pid_t _Fork(void);
+
+static void handler(int number) {
+    (void)number;
+}
+
+static int child(void* argument) {
+    usleep(10000);
+    if (write(*(int*)argument, "c", 1) != 1) return 9;
+    return 5;
+}
+
+/* A child that the call made writes after 10 ms, its parent after 20. */
+static int after(long made, int fd) {
+    if (made < 0) {
+        perror("no child");
+        return 2;
+    }
+    if (made == 0) _exit(child(&fd));
+    int status = 0;
+    usleep(20000);
+    if (write(fd, "p", 1) != 1) return 9;
+    const pid_t ended = waitpid(-1, &status, __WALL);
+    printf("child %ld, ended %d, status %d\n", made, ended, WEXITSTATUS(status));
+    return 0;
+}
+
+/* The file that the library and the run share, as a program may find it. */
+static int shared_file(void) {
+    for (int fd = 3; fd < 1024; fd++) {
+        char name[40], target[200] = "";
+        snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
+        if (readlink(name, target, sizeof target - 1) > 0 && strstr(target, "puckloop-shim")) return fd;
+    }
+    return -1;
+}
+
+static void* shared_memory(size_t* size) {
+    FILE* maps = fopen("/proc/self/maps", "r");
+    char line[400];
+    while (fgets(line, sizeof line, maps)) {
+        unsigned long begin, end;
+        if (strstr(line, "puckloop-shim") == NULL || sscanf(line, "%lx-%lx", &begin, &end) != 2) continue;
+        *size = end - begin;
+        return (void*)begin;
+    }
+    return NULL;
+}
+
+static double cpu(clockid_t id) {
+    struct timespec t = {0, 0};
+    clock_gettime(id, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec / 1e9;
+}
+
+static void show_cpu(void) {
+    struct rusage self, children;
+    struct tms ticks;
+    getrusage(RUSAGE_SELF, &self);
+    getrusage(RUSAGE_CHILDREN, &children);
+    times(&ticks);
+    clockid_t id;
+    clock_getcpuclockid(0, &id);
+    const double all[] = {cpu(CLOCK_PROCESS_CPUTIME_ID),
+                          cpu(CLOCK_THREAD_CPUTIME_ID),
+                          cpu(id),
+                          (double)clock() / CLOCKS_PER_SEC,
+                          (double)self.ru_stime.tv_sec + (double)self.ru_stime.tv_usec / 1e6,
+                          (double)ticks.tms_stime / (double)sysconf(_SC_CLK_TCK)};
+    for (unsigned i = 0; i < sizeof all / sizeof all[0]; i++)
+        printf("%.2f ", all[i]);
+    printf("%.2f %.2f %ld\n", (double)self.ru_utime.tv_sec, (double)children.ru_stime.tv_usec / 1e6,
+           self.ru_maxrss);
+}
+
+int main(int argc, char** argv) {
+    const char* how = argc > 1 ? argv[1] : "";
+    int fd = open_serial(1, 0);
+    static char stack[65536];
+    if (strcmp(how, "SYS_fork") == 0) return after(syscall(SYS_fork), fd);
+    if (strcmp(how, "SYS_clone") == 0) return after(syscall(SYS_clone, SIGCHLD, 0, 0, 0, 0), fd);
+    if (strcmp(how, "SYS_clone3") == 0) {
+        struct clone_args wanted = {.exit_signal = SIGCHLD};
+        return after(syscall(SYS_clone3, &wanted, sizeof wanted), fd);
+    }
+    if (strcmp(how, "_Fork") == 0) return after(_Fork(), fd);
+    if (strcmp(how, "clone") == 0) return after(clone(child, stack + sizeof stack, SIGCHLD, &fd), fd);
+    if (strcmp(how, "clone-vfork") == 0)
+        return after(clone(child, stack + sizeof stack, CLONE_VM | CLONE_VFORK | SIGCHLD, &fd), fd);
+    if (strcmp(how, "clone-memory") == 0)
+        return after(clone(child, stack + sizeof stack, CLONE_VM | SIGCHLD, &fd), fd);
+    if (strcmp(how, "SYS_clone-thread") == 0)
+        return after(
+            syscall(SYS_clone, CLONE_VM | CLONE_THREAD | CLONE_SIGHAND, stack + sizeof stack, 0, 0, 0), fd);
+    if (strcmp(how, "io_uring") == 0) {
+        char params[120] = {0};
+        printf("%ld\n", syscall(SYS_io_uring_setup, 4, params));
+        return 0;
+    }
+    if (strcmp(how, "ptrace") == 0) return (int)ptrace(PTRACE_TRACEME, 0, 0, 0);
+    if (strcmp(how, "SYS_ptrace") == 0) return (int)syscall(SYS_ptrace, PTRACE_TRACEME, 0, 0, 0);
+    if (strcmp(how, "SYS_openat") == 0) {
+        const int other = (int)syscall(SYS_openat, AT_FDCWD, "/dev/ttyS0", O_RDWR, 0);
+        return syscall(SYS_write, other, "ok", 2) != 2;
+    }
+    if (strcmp(how, "truncate") == 0) {
+        const int file = shared_file();
+        const int cut = ftruncate(file, 0);
+        printf("found %d, ftruncate %d %d\n", file >= 0, cut, errno == EPERM);
+        printf("again %ld\n", syscall(SYS_ftruncate, file, 0));
+        return 0;
+    }
+    if (strcmp(how, "scribble") == 0) {
+        size_t size = 0;
+        uint64_t seed = strtoull(argv[2], NULL, 10);
+        unsigned char* memory = shared_memory(&size);
+        for (size_t i = 0; memory != NULL && i < size; i++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            if ((seed >> 40) % 3 == 0) memory[i] = (unsigned char)(seed >> 33);
+        }
+        usleep(1000);
+        return 0;
+    }
+    if (strcmp(how, "close") == 0) {
+        for (int i = 3; i < 1024; i++)
+            syscall(SYS_close, i);
+        closefrom(3);
+        fd = open_serial(1, 0);
+        return write(fd, "ok", 2) != 2;
+    }
+    if (strcmp(how, "file-size") == 0) {
+        struct rlimit limit = {0, 0};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        getrlimit(RLIMIT_FSIZE, &limit);
+        printf("limit %ld\n", (long)limit.rlim_cur);
+        return write(fd, "ok", 2) != 2;
+    }
+    if (strcmp(how, "segv-loop") == 0) {
+        signal(SIGSEGV, handler);
+        usleep(1000);
+        *(volatile int*)(uintptr_t)(argc - 2) = 1;
+        return 0;
+    }
+    if (strcmp(how, "segv-default") == 0) {
+        signal(SIGSEGV, SIG_IGN);
+        *(volatile int*)(uintptr_t)(argc - 2) = 1;
+        return 0;
+    }
+    if (strcmp(how, "processor-time") == 0) {
+        char byte;
+        sleep(1);
+        show_cpu();
+        fcntl(fd, F_SETFL, O_NONBLOCK);
+        for (int i = 0; i < 50000; i++) /* 2 us each */
+            if (read(fd, &byte, 1) == 1) return 9;
+        show_cpu();
+        if (fork() == 0) {
+            for (int i = 0; i < 25000; i++)
+                if (read(fd, &byte, 1) == 1) return 9;
+            _exit(0);
+        }
+        wait(NULL);
+        show_cpu();
+        return 0;
+    }
+    return 4;
+}
