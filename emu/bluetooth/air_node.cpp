@@ -109,12 +109,13 @@ void AirNode::run(Time until, bool inclusive) {
 
 void AirNode::receive(const cosim::Message& message) {
     if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload))
-        receive_frame(message.port, *frame);
+        receive_frame(message.port, *frame, message.time);
     else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload))
         place(*signal, message.time);
 }
 
-void AirNode::receive_frame(std::size_t port, const cosim::UartFrame& frame) {
+/// A receiver that is faster than the sender has a character before the frame that holds it has come in.
+void AirNode::receive_frame(std::size_t port, const cosim::UartFrame& frame, Time now) {
     const bool of_module = port < modules_.size();
     const SerialSettings& line =
         of_module ? modules_[port]->line() : computers_[port - modules_.size()]->line();
@@ -122,15 +123,16 @@ void AirNode::receive_frame(std::size_t port, const cosim::UartFrame& frame) {
         .bit_period = SerialOut::bit_period_of(line), .data_bits = 8, .parity = line.parity};
     for (const auto& character : protocols::sample_frame(frame, receiver, heard_until_[port])) {
         heard_until_[port] = character.time;
+        const Time at = std::max(character.time, now);
         const auto byte = static_cast<std::uint8_t>(character.data);
         if (!of_module)
-            computers_[port - modules_.size()]->byte_received(byte, character.time);
+            computers_[port - modules_.size()]->byte_received(byte, at);
         else if (character.is_break)
-            modules_[port]->break_received(character.time);
+            modules_[port]->break_received(at);
         else if (character.framing_error || character.parity_error)
             modules_[port]->framing_error();
         else
-            modules_[port]->byte_received(byte, character.time);
+            modules_[port]->byte_received(byte, at);
     }
 }
 

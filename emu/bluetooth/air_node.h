@@ -79,7 +79,7 @@ class AirNode : public cosim::Node {
     void check() const;
     void run(cosim::Time until, bool inclusive);
     void receive(const cosim::Message& message);
-    void receive_frame(std::size_t port, const cosim::UartFrame& frame);
+    void receive_frame(std::size_t port, const cosim::UartFrame& frame, cosim::Time now);
     void place(const cosim::Signal& signal, cosim::Time now);
     SerialOut& serial(std::size_t port);
     const SerialOut& serial(std::size_t port) const;

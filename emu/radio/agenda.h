@@ -19,6 +19,7 @@ enum class EventKind : std::uint8_t {
     // Network
     Submit,        ///< a station hands a frame to its MAC
     Repeat,        ///< a station sends a broadcast again
+    Dropped,       ///< a station's frame was forgotten when its module changed channel, PAN or address
     RouteMissing,  ///< nobody answered a route request
     NetworkAckMissing,
 };

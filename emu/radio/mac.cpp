@@ -28,20 +28,21 @@ Mac::Mac(Medium& medium, Agenda& agenda, const std::vector<std::string>& names, 
                                RandomStream(seed, "radio/noise/" + name));
 }
 
-void Mac::set(std::size_t station, const RadioSettings& settings, Time now) {
+std::vector<std::uint64_t> Mac::set(std::size_t station, const RadioSettings& settings) {
     Station& it = stations_[station];
     const RadioSettings before = it.settings;
     it.settings = settings;
     if (before.on && settings.on && before.channel == settings.channel && before.pan == settings.pan &&
         before.address == settings.address)
-        return;
+        return {};
     it.counts.dropped += it.queue.size();
     it.last_heard.clear();
     ++it.turn;
-    std::deque<Job> dropped;
-    dropped.swap(it.queue);
-    for (const Job& job : dropped)
-        user_.sent(station, job.token, false, false, now);
+    std::vector<std::uint64_t> dropped;
+    for (const Job& job : it.queue)
+        dropped.push_back(job.token);
+    it.queue.clear();
+    return dropped;
 }
 
 void Mac::submit(std::size_t station, const MeshFrame& frame, std::uint64_t token, Time now) {

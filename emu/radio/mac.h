@@ -73,8 +73,9 @@ class Mac {
     Mac(const Mac&) = delete;
     Mac& operator=(const Mac&) = delete;
 
-    /// A station that is switched off, or to another channel or PAN, forgets what it was to send.
-    void set(std::size_t station, const RadioSettings& settings, cosim::Time now);
+    /// A station that is switched off, or to another channel or PAN, forgets what it was to send: the tokens
+    /// of these jobs, for which no sent() follows.
+    std::vector<std::uint64_t> set(std::size_t station, const RadioSettings& settings);
     const RadioSettings& settings(std::size_t station) const { return stations_[station].settings; }
     /// Sends a frame to frame.hop_to; sent() follows.
     void submit(std::size_t station, const protocols::MeshFrame& frame, std::uint64_t token, cosim::Time now);

@@ -43,14 +43,32 @@ void Mesh::set(std::size_t station, const RadioSettings& settings, Time now) {
     const RadioSettings before = mac_.settings(station);
     const bool same = before.on && settings.on && before.channel == settings.channel &&
                       before.pan == settings.pan && before.address == settings.address;
-    if (!same) {
-        // What the module waited for is of a life before.
-        std::erase_if(packets_, [station](const auto& one) { return one.second.station == station; });
-        stations_[station].routes.clear();
-        stations_[station].requests.clear();
-        stations_[station].seen.clear();
+    const std::vector<std::uint64_t> dropped = mac_.set(station, settings);
+    if (same) return;
+    // What the module waited for is of a life before.
+    std::erase_if(packets_, [station](const auto& one) { return one.second.station == station; });
+    stations_[station].routes.clear();
+    stations_[station].requests.clear();
+    stations_[station].seen.clear();
+    if (!settings.on) {
+        std::erase_if(jobs_, [station](const auto& one) { return one.second.station == station; });
+        return;
     }
-    mac_.set(station, settings, now);
+    for (const std::uint64_t token : dropped)
+        drop(station, token, now);
+}
+
+/// A frame that the MAC forgot though its module goes on. Its own broadcast is still repeated and reported:
+/// not before anything that a module's message leads to (lookahead()).
+void Mesh::drop(std::size_t station, std::uint64_t token, Time now) {
+    const auto job = jobs_.find(token);
+    if (job == jobs_.end()) return;
+    if (job->second.purpose == Purpose::Copies) {
+        agenda_.add({now + lookahead(), EventKind::Dropped, station, token});
+        return;
+    }
+    if (job->second.purpose == Purpose::Relay) ++stations_[station].counts.no_way_on;
+    jobs_.erase(job);
 }
 
 void Mesh::send(std::size_t station, const MeshFrame& frame, Time now) {
@@ -97,6 +115,9 @@ void Mesh::happen(const Event& event) {
     case EventKind::Repeat:
         submit(event.station, event.token, event.at);
         break;
+    case EventKind::Dropped:
+        sent(event.station, event.token, false, false, event.at);
+        break;
     case EventKind::RouteMissing:
         route_missing(event.station, event.token, event.at);
         break;
@@ -115,6 +136,7 @@ void Mesh::happen(const Event& event) {
 
 void Mesh::submit_at(std::size_t station, Job job, Time at) {
     const std::uint64_t token = next_token_++;
+    job.station = station;
     jobs_.emplace(token, std::move(job));
     agenda_.add({at, EventKind::Submit, station, token});
 }

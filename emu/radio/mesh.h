@@ -99,6 +99,7 @@ class Mesh : private MacUser {
         protocols::MeshFrame frame;
         int copies = 0;        ///< still to be sent after this one
         bool reports = false;  ///< a module's own broadcast
+        std::size_t station = 0;
     };
 
     void received(std::size_t station, const protocols::MeshFrame& frame, const Heard& heard) override;
@@ -117,6 +118,7 @@ class Mesh : private MacUser {
     /// Hands a job to the MAC at `at`.
     void submit_at(std::size_t station, Job job, cosim::Time at);
     void submit(std::size_t station, std::uint64_t token, cosim::Time now);
+    void drop(std::size_t station, std::uint64_t token, cosim::Time now);
     void start(std::uint64_t packet, cosim::Time now);
     void look_for_route(std::uint64_t packet, cosim::Time now);
     void route_missing(std::size_t station, std::uint64_t token, cosim::Time now);

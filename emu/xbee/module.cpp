@@ -108,6 +108,7 @@ void Module::boot(std::uint8_t status, Time now) {
     out_.set_bit_period(bit_);
     up_ = true;
     apply(now);
+    update_cts(now);  // of the life before it may still be high
     if (settings_[kAP] != kTransparent) to_host(protocols::XBeeModemStatus{status}, now);
 }
 

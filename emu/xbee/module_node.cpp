@@ -47,7 +47,7 @@ void ModuleNode::run(Time until, bool inclusive) {
 
 void ModuleNode::receive(const cosim::Message& message) {
     if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) {
-        receive_frame(*frame);
+        receive_frame(*frame, message.time);
     } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&message.payload)) {
         module_.radio_received(*radio, message.time);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
@@ -63,14 +63,15 @@ void ModuleNode::receive(const cosim::Message& message) {
     }
 }
 
-void ModuleNode::receive_frame(const cosim::UartFrame& frame) {
+/// A receiver that is faster than the sender has a character before the frame that holds it has come in.
+void ModuleNode::receive_frame(const cosim::UartFrame& frame, Time now) {
     const protocols::UartReceiver receiver{.bit_period = module_.receiver_bit()};
     for (const auto& character : protocols::sample_frame(frame, receiver, heard_until_)) {
         heard_until_ = character.time;
         if (character.framing_error)
             module_.framing_error();
         else
-            module_.byte_received(static_cast<std::uint8_t>(character.data), character.time);
+            module_.byte_received(static_cast<std::uint8_t>(character.data), std::max(character.time, now));
     }
 }
 

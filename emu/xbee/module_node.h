@@ -52,7 +52,7 @@ class ModuleNode : public cosim::Node, private ModuleAir {
 
   private:
     void receive(const cosim::Message& message);
-    void receive_frame(const cosim::UartFrame& frame);
+    void receive_frame(const cosim::UartFrame& frame, cosim::Time now);
     /// Everything that is due before `until`, at `until` too if `inclusive`.
     void run(cosim::Time until, bool inclusive);
     void radio_sent(std::vector<std::uint8_t> octets, cosim::Time on_air, cosim::Time now) override;

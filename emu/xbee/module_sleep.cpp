@@ -4,6 +4,8 @@
 
 #include "emu/xbee/module.h"
 
+#include <algorithm>
+
 namespace puckloop::xbee {
 
 using cosim::kMillisecond;
@@ -46,7 +48,8 @@ void Module::consider_sleep(Time now) {
 /// Something came in by line or air: ST begins anew.
 void Module::stay_awake(Time now) {
     if (!sleeps_cyclically()) return;
-    add(now + static_cast<Time>(settings_[kST]) * kMillisecond, {TaskKind::Sleep, ++sleep_turn_});
+    const Time awake = static_cast<Time>(settings_[kST]) * kMillisecond;
+    add(now + std::max(awake, options_.processing), {TaskKind::Sleep, ++sleep_turn_});
 }
 
 void Module::fall_asleep(Time now) {

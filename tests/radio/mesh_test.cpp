@@ -321,3 +321,84 @@ TEST_CASE("what happens does not depend on how time is granted") {
         CHECK(life(17 * kMs, cca) == whole);
     }
 }
+
+TEST_CASE("a module that goes off while its broadcast waits is told nothing, and no bound breaks") {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        CAPTURE(seed);
+        RandomStream random(seed, "off");
+        Air air({{0, 0, 0}, {1, 0, 0}}, 30.0, 0.0, seed);
+        air.settings[0].repeats = static_cast<std::uint8_t>(random.below(3));
+        air.tell_all();
+        air.run(10 * kMs);
+        for (int i = 0; i < 4; ++i)
+            air.send(0, protocols::kXBeeBroadcast, {1, 2, 3});
+        air.run(air.now() + 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(30 * kMs))));
+        air.settings[0].on = false;
+        air.tell(0);
+        air.run(air.now() + 1);
+        const std::size_t before = air.fates.size();
+        air.settings[0].on = true;
+        air.run(air.now() + static_cast<Time>(random.below(static_cast<std::uint64_t>(100 * kMs))) + 1);
+        air.tell(0);
+        air.run(air.now() + 2000 * kMs, 3 * kMs);
+        CHECK(air.fates.size() == before);
+    }
+}
+
+TEST_CASE("a module that changes its channel while its broadcast waits hears that it is through, in time") {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        CAPTURE(seed);
+        RandomStream random(seed, "channel");
+        Air air({{0, 0, 0}, {1, 0, 0}}, 30.0, 0.0, seed);
+        air.settings[0].repeats = static_cast<std::uint8_t>(random.below(3));
+        air.tell_all();
+        air.run(10 * kMs);
+        std::vector<std::uint16_t> sent;
+        for (int i = 0; i < 4; ++i)
+            sent.push_back(air.send(0, protocols::kXBeeBroadcast, {1, 2, 3}));
+        air.run(air.now() + 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(30 * kMs))));
+        ++air.settings[0].channel;
+        if (random.below(2) == 0) ++air.settings[0].pan;
+        air.tell(0);
+        air.run(air.now() + 3000 * kMs, 2 * kMs);
+        for (const std::uint16_t sequence : sent)
+            CHECK(fate_of(air, sequence).outcome.delivery == kDelivered);
+        CHECK(air.fates.size() == sent.size());
+    }
+}
+
+TEST_CASE("modules switched, moved to other networks and reset at drawn instants: no bound breaks") {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        CAPTURE(seed);
+        RandomStream random(seed, "switched");
+        Air air({{0, 0, 0}, {1, 0, 0}, {20, 0, 0}, {40, 0, 0}}, 30.0, 0.1, seed);
+        air.tell_all();
+        for (int round = 0; round < 120; ++round) {
+            const std::size_t station = random.below(4);
+            RadioSettings& set = air.settings[station];
+            switch (random.below(6)) {
+            case 0:
+                set.on = !set.on;
+                air.tell(station);
+                break;
+            case 1:
+                set.channel = static_cast<std::uint8_t>(12 + random.below(2));
+                set.repeats = static_cast<std::uint8_t>(random.below(4));
+                set.mac_retries = static_cast<std::uint8_t>(random.below(3));
+                set.network_retries = static_cast<std::uint8_t>(random.below(2));
+                set.cca = static_cast<std::uint8_t>(random.below(2) == 0 ? 0 : 58);
+                air.tell(station);
+                break;
+            case 2:
+                set.address = address(random.below(4));
+                air.tell(station);
+                break;
+            default:
+                air.send(station, random.below(2) == 0 ? protocols::kXBeeBroadcast : address(random.below(5)),
+                         std::vector<std::uint8_t>(random.below(60), 7));
+            }
+            air.run(air.now() + static_cast<Time>(random.below(static_cast<std::uint64_t>(40 * kMs))) + 1,
+                    1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(5 * kMs))));
+        }
+    }
+}

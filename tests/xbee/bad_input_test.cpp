@@ -138,9 +138,9 @@ TEST_CASE("random bytes, frames, pins and air: no promise broken, the same howev
             XBeeBytes data(1 + random.below(12));
             for (std::uint8_t& byte : data)
                 byte = static_cast<std::uint8_t>(random.next());
-            constexpr std::array<const char*, 18> kCommands{"BD", "AP", "RO", "WR", "RE", "FR",
-                                                            "AC", "ND", "DN", "NI", "D6", "FT",
-                                                            "CH", "NT", "GT", "SM", "SP", "ST"};
+            constexpr std::array<const char*, 19> kCommands{"BD", "AP", "RO", "WR", "RE", "FR", "AC",
+                                                            "ND", "DN", "NI", "D6", "FT", "CH", "NT",
+                                                            "GT", "SM", "SP", "ST", "ID"};
             const char* command = kCommands[random.below(kCommands.size())];
             switch (random.below(9)) {
             case 8: {
@@ -149,9 +149,11 @@ TEST_CASE("random bytes, frames, pins and air: no promise broken, the same howev
                 if (random.below(2) == 0) host.run(1100 * kMs, step);
                 break;
             }
-            case 0:
-                host.say_bytes(data);
+            case 0: {
+                constexpr std::array<Time, 5> kBits{kBit, kBit, 9 * kUs, 208 * kUs, 833 * kUs};
+                host.say_bytes(data, kBits[random.below(kBits.size())]);
                 break;
+            }
             case 1:
                 host.say_bytes(encode_xbee(data, XBeeApiMode::Escaped));
                 break;
@@ -191,4 +193,47 @@ TEST_CASE("random bytes, frames, pins and air: no promise broken, the same howev
         const auto whole = life(seed, cosim::kNever);
         CHECK(life(seed, 700 * kUs) == whole);
     }
+}
+
+TEST_CASE("a sender slower than the module's receiver: characters count from when their frame is known") {
+    ModuleOptions options = escaped();
+    options.parameters = {{"AP", 0}, {"BD", 4}, {"RO", 0}};
+    Host host(options);
+    host.boot();
+    host.say_bytes(XBeeBytes(20, 0xFF));  // 9600 baud against 19200: whole characters within half a frame
+    host.run(2000 * kMs, 100 * kUs);
+    CHECK(host.sent.size() >= 4);
+    CHECK(host.node.module().counts().bytes_in + host.node.module().counts().framing_errors >= 20);
+}
+
+TEST_CASE("a module that is reset while CTS is high lowers it when it is up again") {
+    Host host;
+    host.boot();
+    for (int i = 0; i < 40; ++i)
+        host.say(XBeeTx{.id = 1, .to = kXBeeBroadcast, .data = XBeeBytes(20, 'f')});
+    host.run(2000 * kMs);
+    REQUIRE(host.cts == std::vector<double>{1.0});
+    host.pin(1, 1.0);
+    host.run(10 * kMs);
+    host.pin(1, 0.0);
+    host.run(1500 * kMs);
+    CHECK(host.cts == std::vector<double>{1.0, 0.0});
+}
+
+TEST_CASE("a module that processes slowly falls asleep no sooner than its lookahead") {
+    ModuleOptions options = escaped();
+    options.processing = 20 * kMs;
+    options.parameters = {{"AP", 2}, {"BD", 3}, {"ID", 0x01B5}, {"SM", 4}, {"ST", 1}, {"SP", 0x20}};
+    Host host(options);
+    RandomStream random(4, "slow");
+    host.run(200 * kMs);
+    for (int i = 0; i < 200; ++i) {
+        MeshFrame frame;
+        frame.target = kXBeeBroadcast;
+        frame.sequence = static_cast<std::uint16_t>(i);
+        host.hear(frame);
+        host.run(1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(60 * kMs))),
+                 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(9 * kMs))));
+    }
+    CHECK(host.report()["sleeps"].get<int>() > 0);
 }
