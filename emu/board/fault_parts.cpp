@@ -58,20 +58,19 @@ nlohmann::ordered_json fault_report(const chip::BoardFaults& faults, const chip:
     return cosim::fault_results(all, end);
 }
 
-void save_faults(StateWriter& archive, chip::BoardFaults* faults) {
+void save_faults(StateWriter& archive, const chip::BoardFaults* faults) {
     std::vector<std::uint8_t> bytes;
     StateWriter writer(bytes);
-    if (faults != nullptr) writer(*faults);
+    if (faults != nullptr && !faults->faults().empty()) writer(*faults);
     archive(bytes);
 }
 
-void load_faults(StateReader& archive, chip::BoardFaults* faults, chip::BoardAccess& board, cosim::Time now) {
+void load_faults(StateReader& archive, std::unique_ptr<chip::BoardFaults>& faults, cosim::Time now,
+                 const std::function<std::unique_ptr<chip::BoardFaults>()>& make_none) {
     std::vector<std::uint8_t> bytes;
     archive(bytes);
-    if (faults == nullptr) {
-        if (!bytes.empty()) release(board);
-        return;
-    }
+    if (!faults && !bytes.empty()) faults = make_none();
+    if (!faults) return;
     if (!bytes.empty()) {
         StateReader reader(bytes);
         reader(*faults);

@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -72,7 +73,10 @@ cosim::Time reached(const Chip& chip, const chip::BoardFaults* faults, cosim::Ti
 /// In a saved state; a run with faults can go on from one without, and the other way: what faults of the
 /// saved run did to the board's parts ends then, what they did to its chip (memory, registers, the clock's
 /// rate) stays.
-void save_faults(StateWriter& archive, chip::BoardFaults* faults);
-void load_faults(StateReader& archive, chip::BoardFaults* faults, chip::BoardAccess& board, cosim::Time now);
+void save_faults(StateWriter& archive, const chip::BoardFaults* faults);
+/// The board's faults go on from what save_faults() wrote, at `now`. `make_none` makes faults for a board
+/// that has none (a list without any): what the saved run's did ends with them, once the board runs.
+void load_faults(StateReader& archive, std::unique_ptr<chip::BoardFaults>& faults, cosim::Time now,
+                 const std::function<std::unique_ptr<chip::BoardFaults>()>& make_none);
 
 }  // namespace puckloop::board

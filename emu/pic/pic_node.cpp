@@ -243,7 +243,12 @@ void PicNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
-    board::load_faults(archive, faults_.get(), *this, granted_);
+    board::load_faults(archive, faults_, granted_, [this] {
+        chip_faults_.emplace(*chip_);
+        return std::make_unique<chip::BoardFaults>(std::vector<cosim::CarriedFault>{}, *chip_faults_,
+                                                   static_cast<chip::BoardAccess&>(*this), chip::Symbols{},
+                                                   options_.board.crystal_ppm);
+    });
 }
 
 void PicNode::state(CheckpointWriter& archive) const {
@@ -271,7 +276,8 @@ std::string PicNode::finish() {
     json["uart2"] = board::uart_json(chip_->uart_counters(2));
     if (board_.camera())
         json["camera"] = nlohmann::ordered_json::parse(camera::report_json(*board_.camera()));
-    if (faults_) json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
+    if (!options_.faults.empty())
+        json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
     return json.dump();
 }
 

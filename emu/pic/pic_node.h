@@ -127,7 +127,8 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     EmptyBus bus_;
     PicLog log_;
     std::optional<dspic::ChipFaults> chip_faults_;
-    std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
+    std::unique_ptr<chip::BoardFaults>
+        faults_;  ///< null: none was asked for, nor was there any in a loaded state
     /// What goes back beside chip and board.
     struct Followers {
         PicLog& log;

@@ -93,10 +93,10 @@ void RabNode::receive(const cosim::Message& message) {
         chip_->can_news(can_.unit_of(message.port), *can);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
         const int receiver = signal->id - kDemodulator;
-        if (faults_ && receiver >= 0 && receiver < kSensorCount) {
+        if (receiver >= 0 && receiver < kSensorCount) {
             const auto bit = static_cast<std::uint16_t>(1u << receiver);
             const bool begins =
-                signal->value != 0.0 && !faults_->loses_burst(false, receiver + 1, message.time);
+                signal->value != 0.0 && !(faults_ && faults_->loses_burst(false, receiver + 1, message.time));
             own_.seen = static_cast<std::uint16_t>(begins ? own_.seen | bit : own_.seen & ~bit);
             show_carrier(receiver, message.time);
         } else if (const auto port = board_.set_signal(signal->id, signal->value, message.time)) {
@@ -204,7 +204,12 @@ void RabNode::state(StateWriter& archive) const {
 
 void RabNode::state(StateReader& archive) {
     board::load_node(archive, granted_, own_, board_, *chip_, log_);
-    board::load_faults(archive, faults_.get(), *this, granted_);
+    board::load_faults(archive, faults_, granted_, [this] {
+        chip_faults_.emplace(*chip_);
+        return std::make_unique<chip::BoardFaults>(std::vector<cosim::CarriedFault>{}, *chip_faults_,
+                                                   static_cast<chip::BoardAccess&>(*this), chip::Symbols{},
+                                                   options_.board.crystal_ppm);
+    });
 }
 
 void RabNode::state(CheckpointWriter& archive) const {
@@ -222,7 +227,8 @@ std::string RabNode::finish() {
     if (options_.nvm) options_.nvm->save(chip_->memory());
     nlohmann::ordered_json json = rab_json(*chip_, board_, log_);
     json["i2c"]["master_phases"] = own_.master_phases;
-    if (faults_) json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
+    if (!options_.faults.empty())
+        json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
     return json.dump();
 }
 

@@ -99,7 +99,8 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
     std::unique_ptr<dspic::Chip> chip_;
     RabLog log_;
     std::optional<dspic::ChipFaults> chip_faults_;
-    std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
+    std::unique_ptr<chip::BoardFaults>
+        faults_;  ///< null: none was asked for, nor was there any in a loaded state
     board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;

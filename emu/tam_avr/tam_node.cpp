@@ -182,7 +182,12 @@ void TamNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
-    board::load_faults(archive, faults_.get(), *this, granted_);
+    board::load_faults(archive, faults_, granted_, [this] {
+        chip_faults_.emplace(board_->chip());
+        return std::make_unique<chip::BoardFaults>(std::vector<cosim::CarriedFault>{}, *chip_faults_,
+                                                   static_cast<chip::BoardAccess&>(*this), chip::Symbols{},
+                                                   options_.board.resonator_ppm, options_.start);
+    });
 }
 
 void TamNode::state(CheckpointWriter& archive) const {
@@ -198,7 +203,8 @@ void TamNode::state(CheckpointReader& archive) {
 std::string TamNode::finish() {
     log_.end(granted_, *board_);
     nlohmann::ordered_json json = tam_json(*board_, log_, warnings_, options_.start);
-    if (faults_) json["faults"] = board::fault_report(*faults_, board_->analog_faults(), granted_);
+    if (!options_.faults.empty())
+        json["faults"] = board::fault_report(*faults_, board_->analog_faults(), granted_);
     return json.dump();
 }
 

@@ -94,7 +94,8 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     TamLog log_;
     std::unique_ptr<Board> board_;
     std::optional<avr::ChipFaults> chip_faults_;
-    std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
+    std::unique_ptr<chip::BoardFaults>
+        faults_;  ///< null: none was asked for, nor was there any in a loaded state
     board::NodeMark<TamNode, Board, TamLog> mark_{*this, board_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;

@@ -81,7 +81,7 @@ Time BoardFaults::next_step(std::size_t i, Time from) const {
 }
 
 void BoardFaults::settle_next() {
-    next_ = kNever;
+    next_ = holds_anew_;
     for (const Plan& plan : plans_)
         next_ = std::min(next_, plan.due);
 }
@@ -104,7 +104,8 @@ void BoardFaults::watch() {
 }
 
 void BoardFaults::act(Time now) {
-    bool holds = false;
+    bool holds = holds_anew_ <= now;
+    if (holds) holds_anew_ = kNever;
     for (std::size_t i = 0; i < plans_.size(); ++i) {
         if (plans_[i].due > now) continue;
         plan_next(i, now + 1);
@@ -339,19 +340,10 @@ void BoardFaults::loaded(Time now, bool others) {
     if (others) sags_ = drains_ = dazzles_ = shines_ = harms_motors_ = true;
     for (std::size_t i = 0; i < plans_.size(); ++i)
         plan_next(i, plans_[i].holds ? now + 1 : now);
+    holds_anew_ = now;
     settle_next();
     stops_.clear();
     watch();
-    hold(now);
-}
-
-void release(BoardAccess& board) {
-    board.set_battery(std::nullopt);
-    board.set_sag(0);
-    board.set_ambient({});
-    board.set_carrier(0);
-    for (const int motor : {0, 1})
-        board.set_motor(motor, 0, false);
 }
 
 }  // namespace puckloop::chip

@@ -42,9 +42,6 @@ class BoardAccess {
     virtual void set_motor(int /*motor*/, std::uint8_t /*open*/, bool /*stalled*/) {}
 };
 
-/// Nothing of it suffers any more.
-void release(BoardAccess& board);
-
 /// Address of a function or a variable by name.
 struct Symbols {
     std::function<std::optional<std::uint32_t>(const std::string&)> code, data;
@@ -74,7 +71,7 @@ class BoardFaults {
     /// A burst of emitter or receiver `number`, from 1, begins at `now`: true if a fault takes it away.
     bool loses_burst(bool emitter, int number, cosim::Time now);
     /// A saved state of time `now` was loaded; `others`: of a run with faults, whose effects on the board
-    /// end.
+    /// end. All of that is due at `now`, and done by act(): while it is loaded a board can send nothing.
     void loaded(cosim::Time now, bool others);
 
     const std::vector<cosim::CarriedFault>& faults() const { return faults_; }
@@ -83,7 +80,7 @@ class BoardFaults {
     void state(Archive& archive) {
         list_faults(archive, faults_);
         if constexpr (Archive::kRaw) {
-            archive(plans_, next_, stops_);
+            archive(plans_, next_, stops_, holds_anew_);
         } else {
             std::map<std::string, std::uint64_t> arrivals;
             for (std::size_t i = 0; i < plans_.size(); ++i)
@@ -155,6 +152,7 @@ class BoardFaults {
     std::vector<std::uint32_t> stops_;
     cosim::Time next_ = cosim::kNever;
     cosim::Time clock_from_ = cosim::kNever;  ///< the first begin of those that change the clock
+    cosim::Time holds_anew_ = cosim::kNever;  ///< what holds is set once more then
     bool sags_ = false, drains_ = false, harms_motors_ = false, shines_ = false, dazzles_ = false;
 };
 
