@@ -135,8 +135,10 @@ TomlValue read_toml(const std::filesystem::path& file) {
                        file.string());
     } catch (const toml::exception& error) {
         const std::string reason = reason_of(error);
-        throw InputError(file.string(), fmt::format("line {}", error.location().line()), reason,
-                         remedy_for(reason));
+        throw InputError(
+            file.string(),
+            fmt::format("line {}, column {}", error.location().line(), error.location().column()), reason,
+            remedy_for(reason));
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {

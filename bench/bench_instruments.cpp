@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/partial_file.h"
+#include "base/suggest.h"
 #include "emu/image/line_table.h"
 #include "emu/image/symbol_sizes.h"
 
@@ -81,7 +82,7 @@ class BenchInstruments::Watches final : public chip::Instrument {
             rest = rest.substr(0, colon);
         }
         if (!place(watch, rest, image))
-            fail(text, image, "a variable of the image, a register, or 0xADDRESS");
+            fail(text, image, "a variable of the image, a register, or 0xADDRESS" + near_to(rest, image));
         watches_.push_back(watch);
     }
     const std::string& found() const { return found_; }
@@ -133,7 +134,18 @@ class BenchInstruments::Watches final : public chip::Instrument {
         if (watch.bytes == 0) watch.bytes = size;
         return true;
     }
-    [[noreturn]] static void fail(const std::string& text, const image::Image& image, const char* expected) {
+    /// Variables of the image that are called nearly so.
+    static std::string near_to(std::string_view name, const image::Image& image) {
+        std::vector<std::string_view> known;
+        for (const auto& [symbol, place] : image.symbols) {
+            if (place.space != image::Space::Data) continue;
+            const bool of_c = symbol.starts_with("_");  // an underscore that nobody types
+            known.push_back(std::string_view(symbol).substr(of_c ? 1 : 0));
+        }
+        return did_you_mean(name, known);
+    }
+    [[noreturn]] static void fail(const std::string& text, const image::Image& image,
+                                  const std::string& expected) {
         throw InputError(image.file, "--watch", fmt::format("'{}' cannot be watched", text), expected);
     }
 

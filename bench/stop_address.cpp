@@ -1,11 +1,14 @@
 // `--stop-at SYMBOL|0xPC|FILE:LINE`.
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "bench/options.h"
 
 #include <fmt/format.h>
 
 #include <charconv>
+#include <string_view>
+#include <vector>
 
 namespace puckloop::exec {
 
@@ -51,8 +54,15 @@ std::vector<StopAddress> resolve_stop(const std::string& text, const image::Imag
         throw InputError(image.file, "--stop-at",
                          fmt::format("the image has no symbols, so '{}' is unknown", text),
                          "0xPC, or an ELF or COFF image");
+    std::vector<std::string_view> known;
+    for (const auto& [name, symbol] : image.symbols) {
+        if (symbol.space != image::Space::Program) continue;
+        known.push_back(name);
+        // A C function carries an underscore, which nobody types.
+        if (name.starts_with("_")) known.push_back(std::string_view(name).substr(1));
+    }
     throw InputError(image.file, "--stop-at", fmt::format("no symbol '{}' in program memory", text),
-                     "a function or label of the image, or 0xPC");
+                     "a function or label of the image, or 0xPC" + did_you_mean(text, known));
 }
 
 }  // namespace puckloop::exec

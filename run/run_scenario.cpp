@@ -6,6 +6,7 @@
 #include "physics/render/trajectory_svg.h"
 #include "run/control/control_place.h"
 #include "run/debugging/run_debuggers.h"
+#include "run/driven/driven_run.h"
 #include "run/factory/node_factory.h"
 #include "run/factory/preflight.h"
 #include "run/plan/state_plan.h"
@@ -15,6 +16,7 @@
 #include "run/report/results_folder.h"
 #include "run/report/run_log.h"
 #include "run/snapshots/snapshot_plan.h"
+#include "scenarios/reader/allowed_failures.h"
 
 #include <fmt/format.h>
 
@@ -42,7 +44,8 @@ physics::World with_added_things(const scenarios::Scenario& scenario) {
 
 /// Report and picture are made even if the run failed; of what goes wrong with them then only a missing
 /// report is news.
-void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile& report) {
+void write_results(const RunSetup& setup, cosim::Outcome& outcome, const std::vector<UsedFile>& files,
+                   const std::vector<Failure>& failures, ReservedFile& report) {
     const auto guarded = [&](auto work) {
         try {
             work();
@@ -62,7 +65,7 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
         if (!outcome.faults.empty()) write_faults_csv(outcome, setup.out / "faults.csv");
     });
     try {
-        write_report(setup, outcome, report);
+        write_report(setup, outcome, files, failures, report);
     } catch (const RunError& error) {
         outcome.text = outcome.success ? error.what() : fmt::format("{}; {}", outcome.text, error.what());
         outcome.success = false;
@@ -157,15 +160,17 @@ void make_work_folders(const RunSetup& setup) {
 
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
-                            const cosim::InterruptGuard* interrupt) {
+                            const cosim::InterruptGuard* interrupt, bool driven_by_client) {
     check_files(setup);
+    const std::vector<UsedFile> files = used_files(setup);
+    const std::vector<std::string> allowed = scenarios::allowed_failures(setup.scenario.file);
     const ResultsFolder folder(setup.out, result_files(setup));
     make_work_folders(setup);
     ReservedFile report(setup.out / "report.json", kReportBytes);
 
     std::error_code ignored;
     if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", ignored);
-    const ControlPlace control(setup.control, setup.out);
+    const ControlPlace control(setup.control, setup.out, driven_by_client);
     raise_descriptor_limit();
     cosim::RunOptions options;
     if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
@@ -198,6 +203,12 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         debuggers->keep_past(options, trace, record);
         factory = [&](const std::string& node) { return debuggers->make_node(node); };
     }
+    std::optional<DrivenRun> driven;
+    if (driven_by_client) {
+        driven.emplace(setup, request, options.interrupted);
+        driven->drive(options, trace);
+        factory = [&](const std::string& node) { return driven->make_node(node); };
+    }
     cosim::Outcome outcome;
     do {
         const bool back = outcome.reason == cosim::EndReason::Reverted;
@@ -217,6 +228,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         conductor->add_sink(*trace);
         if (record) conductor->add_sink(*record);
         if (live) conductor->add_sink(*live);
+        if (driven) conductor->add_sink(driven->sink());
         log.started(*conductor);
         outcome = conductor->run();
     } while (outcome.reason == cosim::EndReason::Reverted);
@@ -229,12 +241,16 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     }
     if (!request.from.empty() && !outcome.went_on) outcome.text = request.from.string() + ": " + outcome.text;
     judge(outcome);
+    std::vector<Failure> failures;
+    if (outcome.success) failures = failures_of(setup, allowed, outcome);
+    judge_failures(failures, outcome);
+    if (driven) driven->over(outcome);
     take_fault_results(setup, outcome);
     collect_states(setup, outcome);
     judge_snapshots(request, outcome);
     if (request.strict) judge_strictly(setup, outcome);
     log.ended(outcome);
-    write_results(setup, outcome, report);
+    write_results(setup, outcome, files, failures, report);
     log.written();
     return outcome;
 }

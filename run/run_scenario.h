@@ -14,8 +14,9 @@ void make_work_folders(const RunSetup& setup);
 
 /// Runs, records trace.csv in the run's folder (made if absent), writes report.json and draws trajectory.svg.
 /// Throws InputError before the run; what happens during it is in the outcome. `interrupt` may be null.
+/// `driven_by_client`: `setup` is as let_client_drive() leaves it (run/driven/driven_run.h).
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
-                            const cosim::InterruptGuard* interrupt);
+                            const cosim::InterruptGuard* interrupt, bool driven_by_client = false);
 
 }  // namespace puckloop::tools

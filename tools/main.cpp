@@ -4,12 +4,54 @@
 #include "run/plan/linux_arguments.h"
 #include "tools/cli/program.h"
 #include "tools/commands.h"
+#include "tools/guide/guide.h"
 
+#include <array>
+#include <string>
 #include <string_view>
+#include <vector>
+
+namespace puckloop::tools {
+namespace {
+
+// clang-format off
+constexpr std::array kFirstSteps{declare_new, declare_list, declare_check, declare_images, declare_schema};
+constexpr std::array kHelp{declare_test, declare_help, declare_version};
+constexpr std::array kHeadings{
+    Heading{"new", "First steps"}, Heading{"list", "First steps"}, Heading{"check", "First steps"},
+    Heading{"images", "First steps"}, Heading{"schema", "First steps"},
+    Heading{"run", "Run"}, Heading{"replay", "Run"}, Heading{"act", "Run"}, Heading{"exec", "Run"},
+    Heading{"step", "Chips and images"}, Heading{"asm", "Chips and images"}, Heading{"disasm", "Chips and images"},
+    Heading{"upload", "Chips and images"},
+    Heading{"trace", "Look at what was recorded"}, Heading{"frames", "Look at what was recorded"},
+    Heading{"faults", "Faults and measurements"}, Heading{"gap", "Faults and measurements"},
+    Heading{"bench", "Faults and measurements"}, Heading{"test", "Faults and measurements"},
+    Heading{"help", "Help"}, Heading{"version", "Help"}};
+// clang-format on
+
+std::vector<DeclareCommand> all_commands() {
+    std::vector<DeclareCommand> all(kFirstSteps.begin(), kFirstSteps.end());
+    all.insert(all.end(), kCommands.begin(), kCommands.end());
+    all.insert(all.end(), kHelp.begin(), kHelp.end());
+    return all;
+}
+
+}  // namespace
+}  // namespace puckloop::tools
 
 int main(int argc, char** argv) {
     using namespace puckloop::tools;
     if (const auto status = serve_as_node(argc, argv)) return *status;
     if (argc > 1 && std::string_view(argv[1]) == "gap") return become_gap(argv);
-    return run_program(kCommands, pack_linux_arguments({argv + 1, argv + argc}));
+    if (argc > 2 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "gap") {
+        std::vector<std::string> words{argv[0], "gap"};
+        words.insert(words.end(), argv + 3, argv + argc);
+        words.emplace_back("--help");
+        std::vector<char*> pointers;
+        for (std::string& word : words)
+            pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        return become_gap(pointers.data());
+    }
+    return run_program(all_commands(), pack_linux_arguments({argv + 1, argv + argc}), kHeadings);
 }

@@ -81,8 +81,15 @@ struct Judge {
         verdict.symptoms.push_back(std::move(symptom));
     }
 
+    /// A run that went on to its end with a board that hangs or a silent line is no crash of anything.
+    static bool succeeded(const json& report) {
+        if (report.value("success", false)) return true;
+        const auto failures = report.find("failures");
+        return failures != report.end() && !failures->empty();
+    }
+
     bool crashed() {
-        const bool success = run.report.value("success", false);
+        const bool success = succeeded(run.report);
         const std::string why = run.report.value("ended_why", "");
         if (success || !nominal.report.value("success", false)) return false;
         // A program that computes for ever without a call stalls simulated time: no crash.
@@ -108,7 +115,7 @@ struct Judge {
         bool silent = false;
         const double end = std::min(end_of(nominal), end_of(run));
         // All programs ended as they do when their work is done, and it was not.
-        if (run.report.value("success", false) && end < end_of(nominal) - campaign.limits.silence) {
+        if (succeeded(run.report) && end < end_of(nominal) - campaign.limits.silence) {
             note("the run ends early", fmt::format(" (at {:.6f} s)", end));
             return true;
         }

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 constexpr const char* kNote = "control.json";
 constexpr const char* kFolder = "puckloop-";
 constexpr const char* kSocket = "act";
+constexpr const char* kClientSocket = "control";
 
 /// The socket that a note names; empty: none, or not one that new_control_path() could have made.
 std::string socket_in(const nlohmann::json& note) {
@@ -44,6 +45,7 @@ void remove_left_over(const fs::path& note) {
     if (socket.empty() || !is_left_over(socket)) return;
     std::error_code ignored;
     fs::remove(socket, ignored);
+    fs::remove(client_socket_beside(socket), ignored);
     fs::remove(fs::path(socket).parent_path(), ignored);
 }
 
@@ -68,7 +70,11 @@ std::string new_control_path() {
     return "/tmp/" + name;
 }
 
-ControlPlace::ControlPlace(std::string socket, const fs::path& results)
+std::string client_socket_beside(const std::string& socket) {
+    return (fs::path(socket).parent_path() / kClientSocket).string();
+}
+
+ControlPlace::ControlPlace(std::string socket, const fs::path& results, bool driven)
     : socket_(std::move(socket)), note_(results / kNote) {
     std::error_code ignored;
     remove_left_over(note_);
@@ -77,13 +83,16 @@ ControlPlace::ControlPlace(std::string socket, const fs::path& results)
     const std::string folder = fs::path(socket_).parent_path().string();
     if (::mkdir(folder.c_str(), S_IRWXU) != 0)
         throw RunError(fmt::format("cannot make {}: {}", folder, std::strerror(errno)));
-    write_note(note_, {{"socket", socket_}});
+    nlohmann::json note{{"socket", socket_}};
+    if (driven) note["control"] = client_socket_beside(socket_);
+    write_note(note_, note);
 }
 
 ControlPlace::~ControlPlace() {
     if (socket_.empty()) return;
     std::error_code ignored;
     fs::remove(socket_, ignored);
+    fs::remove(client_socket_beside(socket_), ignored);
     fs::remove(fs::path(socket_).parent_path(), ignored);
     try {
         write_note(note_, {{"ended", true}});

@@ -11,13 +11,18 @@ namespace puckloop::tools {
 /// A path for the socket that nobody has yet; nothing is made.
 std::string new_control_path();
 
+/// Beside the world's socket, in the same private folder: where the client of a driven run speaks
+/// (run/driven/driven_run.h).
+std::string client_socket_beside(const std::string& socket);
+
 /// While it lives: the private folder (mode 0700) of the socket, and control.json, which gives its place.
 /// Afterwards control.json states that the run has ended.
 class ControlPlace {
   public:
     /// `socket` empty: the run takes no commands. control.json of an earlier run is removed, and if that run
     /// was killed, its socket as well. Throws RunError.
-    ControlPlace(std::string socket, const std::filesystem::path& results);
+    /// `driven`: control.json names the client's socket too.
+    ControlPlace(std::string socket, const std::filesystem::path& results, bool driven = false);
     ~ControlPlace();
     ControlPlace(const ControlPlace&) = delete;
     ControlPlace& operator=(const ControlPlace&) = delete;

@@ -62,6 +62,16 @@ ordered_json unmodelled_of(const ordered_json& nodes) {
     return all;
 }
 
+ordered_json failures_json(const std::vector<Failure>& failures) {
+    ordered_json list = ordered_json::array();
+    for (const Failure& failure : failures)
+        list.push_back({{"node", failure.node},
+                        {"kind", failure.kind},
+                        {"text", failure.text},
+                        {"allowed", failure.allowed}});
+    return list;
+}
+
 /// What happened to the world.
 ordered_json events_of(const ordered_json& nodes) {
     const auto world = nodes.find("world");
@@ -126,7 +136,8 @@ void judge_strictly(const RunSetup& setup, cosim::Outcome& outcome) {
     outcome.text = "with --strict a warning is a failure: " + warnings.front();
 }
 
-void write_report(const RunSetup& setup, const cosim::Outcome& outcome, ReservedFile& file) {
+void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const std::vector<UsedFile>& files,
+                  const std::vector<Failure>& failures, ReservedFile& file) {
     ordered_json nodes = ordered_json::object();
     for (const auto& node : outcome.nodes)
         nodes[node.name] = node_json(node);
@@ -136,12 +147,17 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                             {"b", link.b},
                             {"from_a", ordered_json::parse(to_json(link.from_a))},
                             {"from_b", ordered_json::parse(to_json(link.from_b))}};
-    ordered_json report{{"scenario", setup.scenario.file.string()},
+    ordered_json report{{"format", kReportFormat},
+                        {"puckloop", version_json()},
+                        {"command_line", command_line_json()},
+                        {"scenario", setup.scenario.file.string()},
                         {"scenario_sha256", setup.scenario_sha256},
+                        {"files", files_json(files)},
                         {"seed", setup.scenario.seed},
                         {"success", outcome.success},
                         {"ended_by", reason_name(outcome.reason)},
                         {"ended_why", outcome.text},
+                        {"failures", failures_json(failures)},
                         {"programs_asked_to_end_s", seconds_or_null(outcome.wind_up)},
                         {"simulated_s", cosim::to_seconds(outcome.simulated)},
                         {"wall_s", outcome.wall_s},

@@ -5,6 +5,7 @@
 #include "scenarios/reader/bluetooth_tables.h"
 #include "scenarios/reader/board_keys.h"
 #include "scenarios/reader/camera_keys.h"
+#include "scenarios/reader/image_key.h"
 #include "scenarios/reader/linux_keys.h"
 #include "scenarios/reader/world_tables.h"
 
@@ -55,7 +56,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
                   std::size_t index) {
     Reader reader(file, where, table);
     PicBoard pic;
-    pic.firmware = folder / reader.text("firmware");
+    pic.firmware = read_firmware(reader, folder, "epuck.hex");
     pic.crystal_ppm = read_clock_error(reader, "crystal_error");
     pic.adc_noise_given = reader.has("adc_noise");
     pic.adc_noise = read_adc_noise(reader, pic.adc_noise);
@@ -88,7 +89,7 @@ RabBoard read_rab(const std::string& file, const std::string& where, const TomlV
                   const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others) {
     Reader reader(file, where, table);
     RabBoard rab;
-    rab.firmware = folder / reader.text("firmware");
+    rab.firmware = read_firmware(reader, folder, "rab.hex");
     rab.crystal_ppm = read_clock_error(reader, "crystal_error");
     rab.adc_noise = read_adc_noise(reader, rab.adc_noise);
     rab.nvm = read_nvm(reader, folder, others);

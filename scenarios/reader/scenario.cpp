@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/faults/kinds/kind_facts.h"
 #include "physics/description/parameters.h"
+#include "scenarios/reader/allowed_failures.h"
 #include "scenarios/reader/bluetooth_tables.h"
 #include "scenarios/reader/can_tables.h"
 #include "scenarios/reader/events/event_tables.h"
@@ -50,6 +51,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
         if (scenario.i2c_clock < 1e3 || scenario.i2c_clock > 1e6)
             run.fail("i2c_clock", "i2c_clock is out of range", "1 kHz to 1 MHz");
         scenario.record_ir = run.flag("record_ir", false);
+        read_allowed(run);
         run.finish();
     }
     const double period = scenario.world.recording.period;
@@ -72,7 +74,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
         ircom.finish();
     }
     if (scenario.robots.empty() && scenario.tams.empty())
-        top.fail("robot", "no robot", "at least one [[robot]] or [[tam]]");
+        top.fail_missing("robot", "at least one [[robot]] or [[tam]]");
     std::size_t index = 0;
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));

@@ -90,8 +90,8 @@ TEST_CASE("a fault on a link that is not there is refused") {
 TEST_CASE("options that make no sense are refused in one line") {
     const Workbench bench;
     refused(bench, {"--durration", "4"}, {"--durration", "perhaps --duration"});
-    for (const char* duration : {"abc", "-3", "0", "3s", "nan"})
-        refused(bench, {"--duration", duration}, {"--duration", duration, "is not a number from"});
+    for (const char* duration : {"abc", "-3", "0", "3 cm", "nan"})
+        refused(bench, {"--duration", duration}, {"--duration", duration, "is not a time from"});
     refused(bench, {"--seed", "x"}, {"--seed"});
     refused(bench, {"--threads", "2"}, {"--threads", "--in-process"});
     refused(bench, {"--model", "nowhere.toml"}, {"nowhere.toml"});

@@ -19,6 +19,7 @@ namespace {
 const std::vector<std::string> kFolders = {
     "base",
     "base/fields",
+    "base/version",
     "cosim/core",
     "protocols",
     "cosim/faults",
@@ -82,6 +83,7 @@ const std::vector<std::string> kFolders = {
     "run/snapshots",
     "run/report",
     "run/debugging",
+    "run/driven",
     "run",
     "bench/bus",
     "bench/targets",

@@ -1,5 +1,7 @@
 #include "tools/cli/command.h"
 
+#include "tools/cli/time_check.h"
+
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
@@ -22,8 +24,17 @@ Option* Option::required() {
 }
 
 Option* Option::check(const Check& check) {
-    option_->check(
-        CLI::Validator([wrong = check.wrong](std::string& text) { return wrong(text); }, check.shown));
+    if (check.shown == kTimeShown)
+        option_->transform(CLI::Validator(
+            [wrong = check.wrong](std::string& text) {
+                std::string problem = wrong(text);
+                if (problem.empty()) text = seconds_text(text);
+                return problem;
+            },
+            ""));
+    else
+        option_->check(
+            CLI::Validator([wrong = check.wrong](std::string& text) { return wrong(text); }, check.shown));
     return this;
 }
 

@@ -1,6 +1,9 @@
 #include "tools/cli/program.h"
 
 #include "base/error.h"
+#include "base/version/version.h"
+#include "tools/cli/help_text.h"
+#include "tools/cli/option_sections.h"
 #include "tools/cli/usage_error.h"
 
 #include <CLI/CLI.hpp>
@@ -13,6 +16,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 #include <vector>
 
@@ -31,6 +35,15 @@ void restore_surroundings() {
     std::signal(SIGCHLD, SIG_DFL);
 }
 
+/// `help run` is `run --help`, `help` alone `--help`.
+std::vector<std::string> without_help_command(std::vector<std::string> words) {
+    if (words.empty() || words.front() != "help") return words;
+    if (words.size() > 1 && words.back().starts_with("-")) return words;  // of the command `help` itself
+    words.erase(words.begin());
+    words.emplace_back("--help");
+    return words;
+}
+
 /// `status`, if all that was printed has been written; else one line, and 1.
 int after_output(int status) {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
@@ -40,16 +53,27 @@ int after_output(int status) {
 
 }  // namespace
 
-int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words) {
+int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words,
+                std::span<const Heading> headings) {
     restore_surroundings();
     CLI::App app{"puckloop: real robot firmware, without the robot"};
     app.name("puckloop");
     app.require_subcommand(1);
-    app.set_version_flag("--version", "puckloop 0.1.0");
+    app.formatter(std::make_shared<HelpText>());
+    app.set_version_flag("--version", "puckloop " + version_text(), "print version and commit");
     int status = 0;
     Command root(app);
     for (const DeclareCommand declare : commands)
         declare(root, status);
+    // Now: a command would take it over.
+    app.footer("puckloop help COMMAND lists its options. First steps: puckloop list, puckloop new NAME.\n"
+               "Documentation: README.md and docs/ of the sources.");
+    for (CLI::App* command : app.get_subcommands({})) {
+        for (const Heading& one : headings)
+            if (one.command == command->get_name()) command->group(std::string(one.heading));
+        set_sections(*command);
+    }
+    words = without_help_command(std::move(words));
     try {
         std::reverse(words.begin(), words.end());  // CLI11 takes them last first
         app.parse(words);

@@ -3,9 +3,11 @@
 #include "base/error.h"
 #include "bench/options.h"
 #include "emu/chip/translation_switch.h"
+#include "emu/image/chip_guess.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
+#include "tools/cli/time_check.h"
 #include "tools/commands.h"
 
 #include <fmt/format.h>
@@ -75,6 +77,30 @@ struct Arguments {
     bool interpret = false;
 };
 
+/// The board whose chip the image is for, said on standard error.
+std::string guess_board(const std::string& image) {
+    if (image.empty())
+        throw InputError("", "exec", "no board is on the bench", "an image, --mcu CHIP or --board BOARD");
+    if (image.ends_with(".toml"))
+        throw InputError(image, "", "is a scenario, no firmware image", "puckloop run FILE");
+    constexpr std::pair<std::string_view, std::string_view> kBoards[] = {
+        {"dspic30f6014a", "pic"}, {"dspic33fj256gp710", "rab"}, {"atmega1284p", "tam"}};
+    std::string board, chip, fitting;
+    std::size_t count = 0;
+    for (const std::string& one : image::chips_that_fit(image)) {
+        const auto* const row = std::find_if(std::begin(kBoards), std::end(kBoards),
+                                             [&](const auto& known) { return known.first == one; });
+        fitting += (count++ == 0 ? "--board " : " or --board ") + std::string(row->second);
+        board = row->second;
+        chip = one;
+    }
+    if (count == 0)
+        throw InputError(image, "", "fits the chip of no known board", "--mcu CHIP or --board BOARD");
+    if (count > 1) throw InputError(image, "", "fits the chips of several boards", fitting);
+    fmt::print(stderr, "puckloop: {} is for the {}: --board {}\n", image, chip, board);
+    return board;
+}
+
 void describe(Command& app, Arguments& a) {
     exec::ExecOptions& o = a.options;
     exec::TargetOptions& t = o.bench.target;
@@ -85,10 +111,13 @@ void describe(Command& app, Arguments& a) {
         app.add_option("--board", o.bench.board,
                        "the chip on its board: pic (the e-puck main board), rab (range and bearing) or tam");
     mcu->excludes(board);
-    app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16, avr-gcc) or COFF (C30)");
+    app.add_option("IMAGE", o.image,
+                   "firmware (without --board and --mcu for the board whose chip it is for): Intel HEX, ELF "
+                   "(XC16, avr-gcc) or COFF (C30)");
     auto* seconds =
         app.add_option("--seconds", o.seconds, "budget in simulated seconds (60 if nobody live is at an end)")
-            ->check(number_between(0.0, kLongestRun));
+            ->check(seconds_between(0.0, kLongestRun))
+            ->type_name("TIME");
     app.add_option("--cycles", o.cycles, "budget in instruction cycles")
         ->check(count_up_to(kMostCycles))
         ->excludes(seconds);
@@ -118,9 +147,11 @@ void describe(Command& app, Arguments& a) {
                    "only instructions of this function, or of 0xFIRST..0xLAST; repeatable")
         ->allow_extra_args(false);
     app.add_option("--trace-from", i.trace_from, "only from this simulated second on")
-        ->check(number_between(0.0, kLongestRun));
+        ->check(seconds_between(0.0, kLongestRun))
+        ->type_name("TIME");
     app.add_option("--trace-to", i.trace_to, "only before this simulated second")
-        ->check(number_between(0.0, kLongestRun));
+        ->check(seconds_between(0.0, kLongestRun))
+        ->type_name("TIME");
     app.add_flag("--stats", i.stats,
                  "cycles of each function, the deepest stack, and reads of RAM that nothing had written");
     app.add_option(
@@ -144,7 +175,8 @@ void describe(Command& app, Arguments& a) {
            "--uart-start", o.uart_start,
            "when standard input is offered, in simulated seconds; without it: once the chip's receiver has "
            "been on for 3 s without a reset")
-        ->check(number_between(0.0, kLongestRun));
+        ->check(seconds_between(0.0, kLongestRun))
+        ->type_name("TIME");
     app.add_option("--i2c", o.i2c,
                    "script:FILE, a bus master for I2C module 1 of targets that are slaves (an AVR alone is "
                    "one): lines `<time_s> w "
@@ -166,9 +198,9 @@ void describe(Command& app, Arguments& a) {
            "--reset-at", o.resets,
            "simulated seconds at which the reset button is pressed (a pulse on MCLR); may be given more "
            "than once. `kill -USR1` on this process presses it at once")
-        ->check(number_between(0.0, kLongestRun))
+        ->check(seconds_between(0.0, kLongestRun))
         ->allow_extra_args(false)
-        ->type_name("S");
+        ->type_name("TIME");
     app.add_option(
            "--nvm", o.nvm,
            "FILE that keeps flash, EEPROM and configuration: read at the start, if it is there, in place "
@@ -239,10 +271,14 @@ void declare_exec(Command& app, int& status) {
     Command* command = app.add_subcommand("exec", "run one chip or board alone on the bench");
     const auto arguments = std::make_shared<Arguments>();
     describe(*command, *arguments);
+    command->footer("Examples:\n"
+                    "  puckloop exec my.hex --uart1 - --seconds 2\n"
+                    "  puckloop exec --board pic BTcom_default.hex --uart1 pty --realtime\n"
+                    "  puckloop exec --mcu atmega1284p my.elf --stop-at main --json");
     command->callback([command, arguments, &status] {
         Arguments& a = *arguments;
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
-            throw InputError("", "exec", "no board is on the bench", "--mcu CHIP or --board BOARD");
+            a.options.bench.board = guess_board(a.options.image);
         start_log("exec", a.log);
         if (a.interpret) chip::set_translation(false);
         exec::BenchOptions& bench = a.options.bench;

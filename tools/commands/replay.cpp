@@ -9,6 +9,7 @@
 #include "run/setup.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/time_check.h"
 #include "tools/commands.h"
 #include "traces/recorded_trace.h"
 
@@ -223,8 +224,8 @@ void declare_replay(Command& app, int& status) {
         ->type_name("NAME");
     declare_run_options(*command, *options);
     command->add_option("--to", options->until, "simulated seconds; else all that was recorded")
-        ->check(number_between(1e-9, kLongest))
-        ->type_name("S");
+        ->check(seconds_between(1e-9, kLongest))
+        ->type_name("TIME");
     command
         ->add_option("--vcd", options->vcd,
                      "write the node's lines, signals and --registers for GTKWave; - is the standard output")
@@ -237,8 +238,8 @@ void declare_replay(Command& app, int& status) {
         ->allow_extra_args(false)
         ->type_name("NAME,...");
     command->add_option("--from", options->from, "where the dump begins, simulated seconds")
-        ->check(number_between(0.0, kLongest))
-        ->type_name("S");
+        ->check(seconds_between(0.0, kLongest))
+        ->type_name("TIME");
     command->add_flag("--list-registers", options->list_registers,
                       "print what --registers takes for this node and its firmware");
     command->add_option("--out", options->request.out, "folder for the node's log (default: DIR/replay)")

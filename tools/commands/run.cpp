@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "cosim/interrupt.h"
+#include "run/driven/driven_run.h"
 #include "run/factory/node_process.h"
 #include "run/plan/overrides.h"
 #include "run/plan/parameter_list.h"
@@ -15,7 +16,9 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
+#include "tools/cli/time_check.h"
 #include "tools/commands.h"
+#include "tools/guide/scenario_name.h"
 #include "traces/export.h"
 
 #include <fmt/format.h>
@@ -28,6 +31,7 @@ namespace puckloop::tools {
 
 namespace {
 
+constexpr double kShortestStall = 1e-3;
 constexpr double kShortestRun = 1e-9, kLongestRun = 720 * 3600.0;  // seconds
 
 struct Options {
@@ -41,6 +45,7 @@ struct Options {
     bool interpret = false;
     bool json = false;
     bool list_parameters = false;
+    bool control = false;
 };
 
 /// Exit status: 0 success, 1 the run failed; signals (Ctrl-C) count as a shell would count them.
@@ -95,6 +100,7 @@ int list_parameters(const RunRequest& request) {
 
 int run(Options& options) {
     RunRequest& request = options.request;
+    request.scenario = scenario_named(request.scenario);
     if (options.list_parameters) return list_parameters(request);
     if (request.scenario.empty() && request.from.empty())
         throw InputError("", "run", "no scenario given", "a file such as scenarios/hello.toml");
@@ -112,9 +118,10 @@ int run(Options& options) {
     if (!options.save_at.empty()) request.save_at = time_of("--at", options.save_at);
     for (const std::string& at : options.snapshot_at)
         request.snapshot_at.push_back(time_of("--save-at", at));
-    request.cache = !options.no_cache;
+    request.cache = !options.no_cache && !options.control;
     if (!request.from.empty()) request = going_on(request);
-    const RunSetup setup = set_up(request);
+    RunSetup setup = set_up(request);
+    if (options.control) let_client_drive(setup, request);
     const cosim::InterruptGuard interrupt;
     if (setup.ready > 0)
         fmt::print(stderr, "the first {:g} s are not paced: the boards boot\n",
@@ -123,7 +130,8 @@ int run(Options& options) {
     cosim::Outcome outcome;
     try {
         outcome = run_scenario(
-            setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
+            setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt,
+            options.control);
     } catch (const RunError& error) {  // Ctrl-C before it began, while it waited for a reader of --live
         if (*interrupt.flag() == 0) throw;
         fmt::print(stderr, "puckloop: {}\n", error.what());
@@ -195,9 +203,9 @@ void declare_run(Command& app, int& status) {
                      "\"drop link=robot0.uart from=robot0.linux at=2s\"; may be given several times")
         ->type_name("\"KIND KEY=VALUE...\"")
         ->allow_extra_args(false);
-    command->add_option("--duration", request.duration, "simulated seconds")
-        ->check(number_between(kShortestRun, kLongestRun))
-        ->type_name("S");
+    command->add_option("--duration", request.duration, "simulated time of the run, such as 30 s")
+        ->check(seconds_between(kShortestRun, kLongestRun))
+        ->type_name("TIME");
     command->add_option("--seed", request.seed, "seed of every random stream")
         ->check(count_up_to(~std::uint64_t{0}))
         ->type_name("N");
@@ -222,8 +230,8 @@ void declare_run(Command& app, int& status) {
     command
         ->add_option("--stall", request.stall_seconds,
                      "wall-clock seconds after which a silent node ends the run")
-        ->check(positive_number())
-        ->type_name("S");
+        ->check(seconds_between(kShortestStall, kLongestRun))
+        ->type_name("TIME");
     command
         ->add_option(
             "--gdb", request.gdb,
@@ -240,6 +248,10 @@ void declare_run(Command& app, int& status) {
         ->allow_extra_args(false)
         ->check(not_empty())
         ->type_name("NODE");
+    command->add_flag(
+        "--control", options->control,
+        "a client drives the run: it stands still at the beginning until one comes to the socket that "
+        "control.json in the results names (docs/control_protocol.md)");
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
                       "model, I2C addresses that nobody acknowledges, ...");
@@ -283,6 +295,11 @@ void declare_run(Command& app, int& status) {
         "a scenario, and --model, also the value in force");
     command->add_flag("--json", options->json, "print only the path of report.json");
     declare_log_options(*command, options->log);
+    command->footer(
+        "Examples:\n"
+        "  puckloop run hello --in-process\n"
+        "  puckloop run scenarios/own_binaries.toml --firmware pic=my.hex --linux ./controller -x 1\n"
+        "  puckloop run hello --duration 5s --record --fault \"drop link=robot0.uart at=2s\"");
     command->callback([options, &status] { status = run(*options); });
 }
 

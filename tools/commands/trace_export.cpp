@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/time_check.h"
 #include "tools/commands/trace_parts.h"
 #include "traces/export.h"
 
@@ -59,9 +60,9 @@ void add_selection(Command& command, TraceSelection& selection) {
     command.add_option("--kind", selection.kinds, "only these kinds (repeatable)")
         ->allow_extra_args(false)
         ->check(one_of({"uart", "i2c", "signal", "radio", "can"}));
-    command.add_option("--from", selection.from_s, "first time, s")->check(number_between(0.0, kLongest));
+    command.add_option("--from", selection.from_s, "first time, s")->check(seconds_between(0.0, kLongest));
     command.add_option("--to", selection.until_s, "end time, s; not included")
-        ->check(number_between(0.0, kLongest));
+        ->check(seconds_between(0.0, kLongest));
 }
 
 void declare_trace_export(Command& trace) {

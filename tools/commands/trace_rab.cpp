@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/time_check.h"
 #include "traces/rab_losses/results.h"
 
 #include <fmt/format.h>
@@ -32,9 +33,9 @@ void declare_trace_rab(Command& trace) {
     Command* command =
         trace.add_subcommand("rab", "range-and-bearing frames of a run: delivered, lost, and why");
     command->add_option("folder", options->folder, "results folder of a run")->required()->type_name("DIR");
-    command->add_option("--from", options->from_s, "first time, s")->check(number_between(0.0, kLongest));
+    command->add_option("--from", options->from_s, "first time, s")->check(seconds_between(0.0, kLongest));
     command->add_option("--to", options->until_s, "end time, s; not included")
-        ->check(number_between(0.0, kLongest));
+        ->check(seconds_between(0.0, kLongest));
     command->add_option("--bin", options->bin_cm, "width of a class of distances, cm")
         ->check(positive_number());
     command->add_flag("--json", options->json, "print JSON");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <string_view>
 #include <utility>
 
 namespace puckloop::linuxboard {
@@ -16,6 +17,7 @@ using cosim::Time;
 
 namespace {
 constexpr std::size_t kMostWarnings = 100;
+constexpr std::string_view kAtTheEnd = " at the end of the run";
 /// For what is left of a program once those of its processes that handle the end signal have ended.
 constexpr Time kRestPause = 100 * cosim::kMillisecond;
 /// So often it is looked whether the first process is still there.
@@ -148,7 +150,7 @@ void LinuxNode::signalled_ended(Time now) {
 void LinuxNode::ended_winding_up(Time now) {
     kill_at_ = end_signal_at_ = kNever;
     wound_up_ = now;
-    const std::string how = fmt::format("{} after {} at the end of the run", end_, signal_name(end_signal_));
+    const std::string how = fmt::format("{} after {}{}", end_, signal_name(end_signal_), kAtTheEnd);
     if (crashed_) return end_run(now, false, fmt::format("{} {}", spec_.program, how), 1);
     if (!ended_well_ && killed_by_ != end_signal_)
         warn(fmt::format("{} {} (at {:.6f} s)", spec_.program, how, cosim::to_seconds(now)));
@@ -176,6 +178,8 @@ std::string LinuxNode::finish() {
     nlohmann::ordered_json report = {
         {"program", spec_.program},
         {"end", end_},
+        // By itself, behind the end signal, with a status or by another signal than that.
+        {"ended_badly", end_.ends_with(kAtTheEnd) && !ended_well_ && killed_by_ != end_signal_},
         {"never_opened_a_device", never_opened_},
         {"starts", starts_},
         {"processes", processes_},

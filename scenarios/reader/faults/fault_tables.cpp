@@ -1,6 +1,7 @@
 #include "scenarios/reader/faults/fault_tables.h"
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "cosim/i2c/i2c_fault.h"
 #include "scenarios/reader/faults/fault_places.h"
 #include "scenarios/reader/faults/fault_when.h"
@@ -153,8 +154,11 @@ void check_receiver(Reader& reader, const FaultPlace& place, const FaultSpec& fa
 const KindInfo& find_kind(Reader& reader, const FaultPlace& place) {
     const std::string name = reader.text("kind", "drop");
     if (const KindInfo* kind = cosim::find_kind(name, place.kind)) return *kind;
+    std::vector<std::string_view> known;
+    for (const KindInfo& kind : cosim::all_kinds())
+        if (kind.place == place.kind) known.push_back(kind.name);
     reader.fail("kind", fmt::format("unknown fault kind '{}' for {}", name, place.name),
-                "one of " + cosim::kinds_of(place.kind));
+                "one of " + cosim::kinds_of(place.kind) + did_you_mean(name, known));
 }
 
 FaultSpec read_fault(Reader& reader, const Scenario& scenario) {

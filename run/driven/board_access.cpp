@@ -1,0 +1,201 @@
+#include "run/driven/board_access.h"
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "emu/avr/device.h"
+#include "emu/image/avr_image.h"
+#include "emu/image/image.h"
+#include "emu/image/symbol_sizes.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::tools {
+
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::uint32_t kMostBytes = 0x10000;
+
+std::string upper(std::string text) {
+    for (char& c : text)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return text;
+}
+
+std::string hex_of(const std::vector<std::uint8_t>& bytes) {
+    return fmt::format("{:02x}", fmt::join(bytes, ""));
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& hex) {
+    std::vector<std::uint8_t> bytes;
+    const auto digit = [&](char c) -> int {
+        if (c >= '0' && c <= '9') return c - '0';
+        if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+        if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+        return -1;
+    };
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+        const int high = digit(hex[i]), low = digit(hex[i + 1]);
+        if (high < 0 || low < 0) break;
+        bytes.push_back(static_cast<std::uint8_t>(high * 16 + low));
+    }
+    if (bytes.empty() || bytes.size() * 2 != hex.size())
+        throw InputError("", "data", fmt::format("'{}' are no bytes", hex), "pairs of hexadecimal digits");
+    return bytes;
+}
+
+std::map<std::string, image::Symbol> symbols_of(const std::string& file, bool avr) {
+    if (!avr) return image::load_image(file).symbols;
+    return image::load_avr_image(file, puckloop::avr::find_device("atmega1284p")->image_part()).symbols;
+}
+
+}  // namespace
+
+BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : node_(node) {
+    const auto sizes = image::symbol_sizes(file);
+    for (const auto& [name, symbol] : symbols_of(file, avr)) {
+        if (symbol.space != image::Space::Data) continue;
+        const auto size = sizes.find(name);
+        const Variable variable{symbol.address, size == sizes.end() ? 0 : size->second};
+        variables_[name] = variable;
+        // A C variable carries an underscore, which nobody types.
+        if (name.starts_with("_")) variables_.try_emplace(name.substr(1), variable);
+    }
+}
+
+BoardAccess::Place BoardAccess::variable(const std::string& name) const {
+    if (variables_.empty())
+        throw InputError("", std::string(node_.name()), "its image has no symbols",
+                         "an ELF or COFF image, or memory by address");
+    const auto found = variables_.find(name);
+    if (found == variables_.end()) {
+        std::vector<std::string_view> known;
+        for (const auto& one : variables_)
+            known.push_back(one.first);
+        throw InputError("", std::string(node_.name()), fmt::format("no variable '{}' in data memory", name),
+                         "a variable of the image" + did_you_mean(name, known));
+    }
+    return {debug::DebugChip::address_of_data(static_cast<std::uint16_t>(found->second.address)),
+            found->second.bytes};
+}
+
+BoardAccess::Place BoardAccess::place_of(const json& request) const {
+    Place place;
+    if (request.contains("variable")) {
+        place = variable(request.at("variable").get<std::string>());
+    } else {
+        const auto address = request.at("memory").get<std::uint32_t>();
+        if (address >= kMostBytes)
+            throw InputError("", std::string(node_.name()), fmt::format("0x{:x} is no data address", address),
+                             "0 to 0xffff");
+        place = {debug::DebugChip::address_of_data(static_cast<std::uint16_t>(address)), 0};
+    }
+    if (const auto bytes = request.value("bytes", std::uint32_t{0}); bytes > 0) place.bytes = bytes;
+    constexpr std::uint32_t kWord = 2;
+    if (place.bytes == 0) place.bytes = node_.chip().architecture().empty() ? kWord : 1;
+    if (place.bytes > kMostBytes)
+        throw InputError("", "bytes", fmt::format("{} are too many", place.bytes), "at most 65536");
+    return place;
+}
+
+ordered_json BoardAccess::read_register(std::string name) const {
+    const debug::DebugChip& chip = node_.chip();
+    name = upper(name);
+    const auto registers = chip.registers();
+    for (std::size_t i = 0; i < registers.size(); ++i)
+        if (upper(registers[i].name) == name)
+            return {{"value", chip.read_register(i)},
+                    {"bits", registers[i].bits},
+                    {"fields", ordered_json::object()}};
+    const auto special = chip.special(name);
+    if (!special) {
+        const std::vector<std::string> names = chip.special_names();
+        throw InputError("", std::string(node_.name()),
+                         fmt::format("the {} has no register '{}'", chip.name(), name),
+                         "a data-sheet name" + did_you_mean(name, {names.begin(), names.end()}));
+    }
+    ordered_json fields = ordered_json::object();
+    for (const auto& field : special->fields)
+        fields[field.name] = field.value;
+    return {{"value", special->value},
+            {"bits", special->bits},
+            {"fields", fields},
+            {"address", special->address}};
+}
+
+ordered_json BoardAccess::read(const json& request) const {
+    if (request.contains("register")) return read_register(request.at("register").get<std::string>());
+    const Place place = place_of(request);
+    std::vector<std::uint8_t> bytes(place.bytes);
+    if (!node_.chip().read_memory(place.address, bytes))
+        throw InputError("", std::string(node_.name()), "not all of these addresses exist",
+                         "addresses of data memory");
+    ordered_json reply{
+        {"address", place.address & (kMostBytes - 1)}, {"bytes", place.bytes}, {"data", hex_of(bytes)}};
+    std::uint64_t value = 0;
+    for (std::size_t i = std::min(bytes.size(), sizeof value); i > 0; --i)
+        value = value << 8 | bytes[i - 1];
+    if (bytes.size() <= sizeof value) reply["value"] = value;
+    return reply;
+}
+
+/// RAM at once; what may have the board send something, before the next instruction.
+void BoardAccess::write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes) {
+    debug::DebugChip& chip = node_.chip();
+    std::vector<std::uint8_t> there(bytes.size());
+    if (!chip.read_memory(address, there))
+        throw InputError("", std::string(node_.name()), "not all of these addresses exist",
+                         "addresses of data memory");
+    const std::uint32_t data = address & (kMostBytes - 1);
+    if (data >= chip.ram_start() && data + bytes.size() <= chip.ram_end())
+        chip.write_memory(address, bytes);
+    else
+        node_.change_later([address, bytes](debug::DebugChip& later) { later.write_memory(address, bytes); });
+}
+
+void BoardAccess::write_register(std::string name, std::uint64_t value) {
+    debug::DebugChip& chip = node_.chip();
+    name = upper(name);
+    const auto registers = chip.registers();
+    for (std::size_t i = 0; i < registers.size(); ++i) {
+        if (upper(registers[i].name) != name) continue;
+        if (!chip.write_register(i, value))
+            throw InputError("", std::string(node_.name()), fmt::format("{} cannot be written", name));
+        return;
+    }
+    const ordered_json there = read_register(name);
+    std::vector<std::uint8_t> bytes;
+    for (int bit = 0; bit < there.at("bits").get<int>(); bit += 8)
+        bytes.push_back(static_cast<std::uint8_t>(value >> bit));
+    const auto address = static_cast<std::uint16_t>(there.at("address").get<std::uint32_t>());
+    write_bytes(debug::DebugChip::address_of_data(address), bytes);
+}
+
+void BoardAccess::write(const json& request) {
+    if (request.contains("register"))
+        return write_register(request.at("register").get<std::string>(),
+                              request.at("value").get<std::uint64_t>());
+    Place place = place_of(request);
+    std::vector<std::uint8_t> bytes;
+    if (request.contains("data")) {
+        bytes = bytes_of(request.at("data").get<std::string>());
+    } else {
+        const auto value = request.at("value").get<std::int64_t>();
+        constexpr std::uint32_t kWidest = sizeof value;
+        if (place.bytes > kWidest)
+            throw InputError("", "value", fmt::format("{} bytes are no number", place.bytes),
+                             "data in hexadecimal");
+        for (std::uint32_t i = 0; i < place.bytes; ++i)
+            bytes.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
+    }
+    write_bytes(place.address, bytes);
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,46 @@
+#pragma once
+// What the client of a driven run reads and writes of a board: registers by their data-sheet names, variables
+// by the image's symbols, memory by address of data space.
+
+#include "run/driven/driven_node.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+class BoardAccess {
+  public:
+    /// `firmware`: its image, of an AVR or of a dsPIC. Throws InputError: it cannot be read.
+    BoardAccess(DrivenNode& node, const std::string& firmware, bool avr);
+
+    /// `request` has "register", "variable" or "memory" (and "bytes"). Throws InputError for what there is
+    /// not.
+    nlohmann::ordered_json read(const nlohmann::json& request) const;
+    /// The same with "value", or "data" in hexadecimal.
+    void write(const nlohmann::json& request);
+    DrivenNode& node() { return node_; }
+
+  private:
+    struct Place {
+        std::uint32_t address = 0;  ///< as a debugger has it
+        std::uint32_t bytes = 0;
+    };
+    Place variable(const std::string& name) const;
+    Place place_of(const nlohmann::json& request) const;
+    nlohmann::ordered_json read_register(std::string name) const;
+    void write_register(std::string name, std::uint64_t value);
+    void write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
+
+    struct Variable {
+        std::uint32_t address = 0, bytes = 0;  ///< data address; bytes 0: the image does not say
+    };
+    DrivenNode& node_;
+    std::map<std::string, Variable> variables_;
+};
+
+}  // namespace puckloop::tools

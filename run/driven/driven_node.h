@@ -1,0 +1,58 @@
+#pragma once
+// A board of a run that a client drives: between two advances the client may read and change its chip, and
+// end the run.
+
+#include "cosim/core/stateful_node.h"
+#include "emu/chip/instrument.h"
+#include "run/stats/board_chip.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
+  public:
+    explicit DrivenNode(std::unique_ptr<cosim::StatefulNode> board);
+
+    debug::DebugChip& chip() { return *chip_.chip; }
+    /// A change that may have the board send something: it is made before the next instruction.
+    void change_later(std::function<void(debug::DebugChip&)> change) {
+        changes_.push_back(std::move(change));
+    }
+    bool changes_wait() const { return !changes_.empty(); }
+    /// The run ends with this at the node's next advance.
+    void ask_to_stop(cosim::Stop stop) { stop_wanted_ = std::move(stop); }
+    /// What a snapshot holds of it.
+    std::vector<std::uint8_t> saved() const;
+
+    std::string_view name() const override { return board_->name(); }
+    std::span<const cosim::Port> ports() const override { return board_->ports(); }
+    /// The client may change the chip at any instant, which then sends earlier than it would have. Only a
+    /// bus's next phase waits for the answer to the last one all the same.
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override { return board_->lookahead(port); }
+    std::optional<cosim::Time> begun(cosim::PortIndex port) const override { return board_->begun(port); }
+    std::optional<cosim::Stop> stop() const override { return stop_; }
+    void state(StateWriter& archive) const override;
+    void state(StateReader& archive) override;
+    void renew_random_streams() override { board_->renew_random_streams(); }
+    std::string finish() override { return board_->finish(); }
+    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                 std::vector<cosim::Message>& outbox) override;
+
+  private:
+    bool instruction(std::uint32_t pc, std::uint64_t cycle) override;
+    void access(std::uint16_t, int, bool) override {}
+
+    std::vector<std::function<void(debug::DebugChip&)>> changes_;
+    std::unique_ptr<cosim::StatefulNode> board_;
+    BoardChip chip_;
+    cosim::Time reached_ = 0;
+    std::optional<cosim::Stop> stop_, stop_wanted_;
+};
+
+}  // namespace puckloop::tools

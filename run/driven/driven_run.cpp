@@ -1,0 +1,309 @@
+#include "run/driven/driven_run.h"
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "base/version/version.h"
+#include "cosim/resume/state_file.h"
+#include "run/control/control_place.h"
+#include "run/factory/node_factory.h"
+#include "run/snapshots/origin.h"
+#include "scenarios/reader/quantity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace puckloop::tools {
+
+namespace {
+
+using cosim::kNever;
+using cosim::Time;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr double kLongest = 720 * 3600.0;  // s
+constexpr Time kFinest = cosim::kMicrosecond;
+
+/// "20 ms", or a number of seconds.
+Time time_of(const json& request, const char* key) {
+    const json& value = request.at(key);
+    double seconds = -1;
+    if (value.is_number()) {
+        seconds = value.get<double>();
+    } else if (value.is_string()) {
+        try {
+            seconds = scenarios::parse_quantity(value.get<std::string>(), scenarios::Dimension::Time);
+        } catch (const scenarios::QuantityError& error) {
+            throw InputError("", key, error.problem, error.expected);
+        }
+    }
+    if (!(seconds >= 0 && seconds <= kLongest))
+        throw InputError("", key, fmt::format("{} is no time of a run", value.dump()), "such as \"20 ms\"");
+    return cosim::from_seconds(seconds);
+}
+
+}  // namespace
+
+void let_client_drive(RunSetup& setup, const RunRequest& request) {
+    for (const auto& [option, given] :
+         {std::pair{"--realtime", request.realtime}, std::pair{"--paced", request.paced},
+          std::pair{"--gdb", !request.gdb.empty()}, std::pair{"--save-state", !request.save_state.empty()},
+          std::pair{"--from-state", !request.from_state.empty()}})
+        if (given)
+            throw InputError("", option,
+                             "does not go with --control, whose client decides when the run goes on",
+                             "one of them");
+    setup.control = new_control_path();
+    for (PlannedNode& node : setup.nodes) {
+        if (auto* world = std::get_if<WorldSpec>(&node.what.kind)) {
+            world->control = setup.control;
+            world->events.live = true;
+            world->events.journal = (setup.out / "events.toml").string();
+            node.any_thread = false;
+        } else if (has_board(node.what)) {
+            node.what.care.from_state.reset();
+            node.what.care.save_state.reset();
+            node.in_process = true;
+            node.any_thread = false;
+        }
+    }
+}
+
+DrivenRun::DrivenRun(const RunSetup& setup, const RunRequest& request,
+                     const volatile std::sig_atomic_t* interrupted)
+    : setup_(setup),
+      request_(request),
+      interrupted_(interrupted),
+      line_(client_socket_beside(setup.control)),
+      world_(setup.control),
+      origin_(origin_of(setup, request)),
+      next_(setup.from_time) {}
+
+std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
+    NodeDescription description = decode(text);
+    if (!has_board(description)) return tools::make_node(description);
+    // At power-up: what it was in a snapshot is loaded into it.
+    auto node = std::make_unique<DrivenNode>(make_board(description));
+    const BoardFields fields = board_fields(description);
+    const bool avr = std::holds_alternative<tam::TamSpec>(description.kind);
+    boards_[fields.name] = std::make_unique<BoardAccess>(*node, fields.firmware, avr);
+    return node;
+}
+
+void DrivenRun::drive(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace) {
+    trace_ = &trace;
+    options.save_next = [this](Time after) {
+        if (next_ && (*next_ > after || !begun_)) return *next_;
+        return kNever;
+    };
+    options.save = [this, to_file = options.save, at = options.save_at](cosim::RunSnapshot& snapshot) {
+        if (std::find(at.begin(), at.end(), snapshot.time) != at.end()) to_file(snapshot);
+        if (!next_ || snapshot.time < *next_) return;
+        begun_ = true;
+        stand(snapshot);
+    };
+}
+
+void DrivenRun::stand(cosim::RunSnapshot& snapshot) {
+    now_ = snapshot.time;
+    next_.reset();
+    if (step_) {
+        const bool holds = met();
+        if (!holds && now_ < step_->until) {  // on to where its condition is looked at again
+            next_ = std::min(step_->until, now_ + step_->every);
+            return;
+        }
+        ordered_json done = reply(step_->id);
+        done["met"] = step_->condition.is_null() || holds;
+        if (frames_.seen() && !frames_.found().is_null()) done["frame"] = frames_.found();
+        done["acts"] = world_.take_replies();
+        frames_.wait_for_nothing();
+        step_.reset();
+        line_.send(done);
+    } else {
+        if (!line_.await_client(interrupted_)) return;
+        line_.send(greeting());
+    }
+    serve(snapshot);
+}
+
+bool DrivenRun::met() {
+    const json& condition = step_->condition;
+    if (condition.is_null()) return false;
+    if (condition.contains("frame") || condition.contains("text")) return frames_.seen();
+    return compare(condition);
+}
+
+bool DrivenRun::compare(const json& condition) {
+    const auto value = board(condition).read(condition).at("value").get<std::uint64_t>();
+    const std::string is = condition.value("is", "==");
+    const auto other = condition.at("value").get<std::uint64_t>();
+    if (is == "==") return value == other;
+    if (is == "!=") return value != other;
+    if (is == "<") return value < other;
+    if (is == ">") return value > other;
+    if (is == "<=") return value <= other;
+    if (is == ">=") return value >= other;
+    throw InputError("", "is", fmt::format("'{}' compares nothing", is), "==, !=, <, >, <= or >=");
+}
+
+void DrivenRun::serve(cosim::RunSnapshot& snapshot) {
+    for (bool go_on = false; !go_on;) {
+        const std::optional<std::string> text = line_.next(interrupted_);
+        if (!text) {
+            if (!line_.connected()) end("its client went away", false);
+            return;
+        }
+        const json request = json::parse(*text, nullptr, false);
+        const json id = request.is_object() ? request.value("id", json()) : json();
+        try {
+            if (!request.is_object()) throw InputError("", "request", "is no JSON object", "one on one line");
+            const ordered_json answered = answer(request, snapshot, go_on);
+            if (!answered.is_null()) line_.send(answered);
+        } catch (const json::exception& error) {
+            line_.send({{"id", id},
+                        {"ok", false},
+                        {"error", fmt::format("a key is missing or of another type: {}", error.what())}});
+        } catch (const std::runtime_error& error) {
+            line_.send({{"id", id}, {"ok", false}, {"error", error.what()}});
+        }
+    }
+}
+
+ordered_json DrivenRun::answer(const json& request, cosim::RunSnapshot& snapshot, bool& go_on) {
+    const std::string op = request.at("op");
+    ordered_json answered = reply(request.value("id", json()));
+    if (op == "step") {
+        begin_step(request);
+        go_on = true;
+        return nullptr;
+    }
+    if (op == "end") {
+        end("its client ended the run", true);
+        step_ = Step{request.value("id", json()), kNever, 0, json()};
+        go_on = true;
+        return nullptr;
+    }
+    if (op == "read") {
+        answered.update(board(request).read(request));
+    } else if (op == "write") {
+        BoardAccess& access = board(request);
+        access.write(request);
+        for (cosim::NodeSnapshot& node : snapshot.nodes)
+            if (node.name == access.node().name()) node.state = access.node().saved();
+    } else if (op == "capture") {
+        frames_.capture(FrameFilter(request.value("frame", json::object()), setup_.links));
+    } else if (op == "frames") {
+        std::size_t lost = 0;
+        answered["frames"] = frames_.take(lost);
+        answered["lost"] = lost;
+    } else if (op == "act") {
+        world_.act(request.at("command"));
+    } else if (op == "save") {
+        save(request, snapshot);
+    } else if (op != "info") {
+        constexpr std::array<std::string_view, 9> kOps{"info",   "step", "read", "write", "capture",
+                                                       "frames", "act",  "save", "end"};
+        throw InputError(
+            "", "op", fmt::format("there is no '{}'", op),
+            fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
+    }
+    if (op == "info") answered.update(greeting());
+    return answered;
+}
+
+void DrivenRun::begin_step(const json& request) {
+    Step step{request.value("id", json()), 0, 0, request.value("until", json())};
+    const bool to = request.contains("to");
+    if (to == request.contains("for"))
+        throw InputError("", "step", "needs one of 'to' and 'for'", R"({"op": "step", "for": "20 ms"})");
+    step.until = to ? time_of(request, "to") : cosim::later(now_, time_of(request, "for"));
+    if (step.until <= now_)
+        throw InputError("", to ? "to" : "for",
+                         fmt::format("{:.9f} s is not after now, {:.9f} s", cosim::to_seconds(step.until),
+                                     cosim::to_seconds(now_)),
+                         "a later time");
+    if (!step.condition.is_null()) {
+        step.every = request.contains("every") ? time_of(request, "every") : cosim::kMillisecond;
+        if (step.every < kFinest) throw InputError("", "every", "is too short", "1 us or more");
+        const json& condition = step.condition;
+        if (condition.contains("frame") || condition.contains("text"))
+            frames_.wait_for(FrameFilter(condition.value("frame", json::object()), setup_.links),
+                             condition.value("text", ""));
+        else
+            compare(condition);  // what cannot be looked at is refused now
+    }
+    next_ = step.condition.is_null() ? step.until : std::min(step.until, now_ + step.every);
+    step_ = std::move(step);
+}
+
+void DrivenRun::save(const json& request, cosim::RunSnapshot& snapshot) {
+    for (const auto& [name, access] : boards_)
+        if (access->node().changes_wait())
+            throw InputError("", "save",
+                             fmt::format("a register of {} is written before its next instruction", name),
+                             "a step before it");
+    snapshot.build = cosim::build_id();
+    snapshot.origin = origin_;
+    snapshot.trace = (*trace_)->written();
+    cosim::write_snapshot(request.at("file").get<std::string>(), snapshot);
+}
+
+/// By the first board, at its next advance.
+void DrivenRun::end(const std::string& reason, bool success) {
+    ended_ = true;
+    next_.reset();
+    if (!boards_.empty()) boards_.begin()->second->node().ask_to_stop({now_, success, reason});
+}
+
+BoardAccess& DrivenRun::board(const json& request) {
+    const std::string name = request.at("node");
+    const auto found = boards_.find(name);
+    if (found != boards_.end()) return *found->second;
+    std::vector<std::string_view> known;
+    for (const auto& one : boards_)
+        known.push_back(one.first);
+    throw InputError("", "node", fmt::format("the run has no board '{}'", name),
+                     fmt::format("one of {}{}", fmt::join(known, ", "), did_you_mean(name, known)));
+}
+
+ordered_json DrivenRun::reply(const json& id) const {
+    return {{"id", id}, {"ok", true}, {"time_s", cosim::to_seconds(now_)}, {"time_ps", now_}};
+}
+
+ordered_json DrivenRun::greeting() const {
+    const Version& version = program_version();
+    ordered_json nodes = ordered_json::array(), boards = ordered_json::array(), links = ordered_json::array();
+    for (const PlannedNode& node : setup_.nodes)
+        nodes.push_back(node.name);
+    for (const auto& one : boards_)
+        boards.push_back(one.first);
+    for (const cosim::LinkSpec& link : setup_.links)
+        links.push_back({{"name", link.name}, {"a", link.a.node}, {"b", link.b.node}});
+    return {{"protocol", kProtocol},
+            {"version", version.number},
+            {"commit", version.commit},
+            {"time_s", cosim::to_seconds(now_)},
+            {"time_ps", now_},
+            {"results", setup_.out.string()},
+            {"nodes", nodes},
+            {"boards", boards},
+            {"links", links}};
+}
+
+void DrivenRun::over(const cosim::Outcome& outcome) {
+    if (!step_) return;
+    now_ = outcome.simulated;
+    ordered_json done = reply(step_->id);
+    done["met"] = step_->condition.is_null() ? ended_ : frames_.seen();
+    done["ended"] = true;
+    done["success"] = outcome.success;
+    done["ended_why"] = outcome.text;
+    line_.send(done);
+}
+
+}  // namespace puckloop::tools

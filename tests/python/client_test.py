@@ -1,0 +1,152 @@
+"""The client of clients/python against real runs, in both placements."""
+
+import json
+import os
+import pathlib
+import stat
+import unittest
+
+from kit import PROGRAM, InFolder
+
+os.environ["PUCKLOOP"] = PROGRAM
+import puckloop  # noqa: E402
+
+
+def scenario(duration="5 s"):
+    made = puckloop.Scenario(run={"duration": duration, "allow": ["program"]}, arena={"size": ["1 m", "1 m"]})
+    made.add("box", name="carton", centre=["30 cm", "0 cm"], size=["10 cm", "10 cm", "10 cm"])
+    made.add("robot", position=["0 m", "0 m"], pic={"firmware": "own"},
+             linux={"program": ["puckloop-control", "--behaviour", "wander", "--duration", "60"], "start": "20 ms"})
+    return made
+
+
+class Client(InFolder):
+    def begun(self, name="out", **more):
+        run = puckloop.start(scenario(), out=self.folder / name, **more)
+        self.addCleanup(run.close)
+        return run
+
+    def test_it_stands_still_where_it_is_asked_to(self):
+        with self.begun() as run:
+            self.assertEqual(run.time_ps, 0)
+            self.assertEqual(run.boards, ["robot0.pic"])
+            self.assertEqual(run.step(to="100 ms").time_ps, 100_000_000_000)
+            self.assertEqual(run.step(for_=0.05).time_ps, 150_000_000_000)
+            with self.assertRaisesRegex(puckloop.RequestError, "is not after now"):
+                run.step(to="100 ms")
+            # Nobody else may speak to it.
+            socket = pathlib.Path(json.loads((run.results / "control.json").read_text())["control"])
+            self.assertEqual(stat.S_IMODE(socket.stat().st_mode), 0o600)
+            self.assertEqual(stat.S_IMODE(socket.parent.stat().st_mode), 0o700)
+        self.assertEqual(json.loads((run.results / "control.json").read_text()), {"ended": True})
+
+    def test_a_frame_is_waited_for_and_captured(self):
+        with self.begun() as run:
+            run.capture(link="robot0.uart", sender="robot0.pic")
+            step = run.step(for_="1 s", until={"frame": {"link": "robot0.uart", "from": "robot0.pic"}})
+            self.assertTrue(step.met)
+            self.assertEqual(step.frame.sender, "robot0.pic")
+            self.assertLessEqual(step.time_ps - step.frame.time_ps, 1_000_000_000)
+            run.step(for_="200 ms")
+            frames = run.frames()
+            self.assertEqual(frames[0], step.frame)
+            self.assertGreaterEqual(len(frames), 72)
+            self.assertEqual(run.frames(), [])
+            step = run.step(for_="20 ms", until={"frame": {"link": "robot0.uart", "value": "zz"}})
+            self.assertFalse(step.met)
+
+    def test_registers_and_memory_are_read_and_changed(self):
+        with self.begun() as run:
+            run.step(to="200 ms")
+            board = run.board("robot0.pic")
+            self.assertGreater(board.register("PC").value, 0)
+            led = board.register("TRISA")
+            self.assertEqual(led.bits, 16)
+            self.assertEqual(board.memory(0x2000, 4).data, board.memory(0x2000, 2).data + board.memory(0x2002, 2).data)
+            board.set_memory(0x2400, b"\x12\x34")
+            self.assertEqual(board.memory(0x2400, 2).value, 0x3412)
+            board.set_register("OC8RS", 0x1234)
+            board.set_register("LATA", 0x0040)  # a pin: the board sends a signal
+            with self.assertRaisesRegex(puckloop.RequestError, "before its next instruction"):
+                run.save(self.folder / "run.snapshot")
+            run.step(for_="1 ms")
+            self.assertEqual(board.register("OC8RS").value, 0x1234)
+            for ask, text in ((lambda: board.register("TRISB1"), 'did you mean "TRISB'),
+                              (lambda: board.variable("x"), "has no symbols"),
+                              (lambda: board.memory(0x12345, 1), "no data address"),
+                              (lambda: run.board("robot0.pik").register("PC"), 'did you mean "robot0.pic"')):
+                with self.assertRaisesRegex(puckloop.RequestError, text):
+                    ask()
+            self.assertEqual(run.step(to="210 ms").time_ps, 210_000_000_000)  # nothing was lost
+
+    def test_a_register_is_waited_for(self):
+        with self.begun() as run:
+            step = run.step(to="1 s", until={"node": "robot0.pic", "register": "W15", "is": ">", "value": 0x0800})
+            self.assertTrue(step.met)
+            self.assertLess(step.time_s, 1)
+
+    def test_the_same_requests_give_the_same_trace_in_both_placements(self):
+        hashes = []
+        for in_process in (True, False):
+            with self.begun(f"out{in_process}", in_process=in_process) as run:
+                run.step(to="300 ms")
+                run.act("move carton to 20 cm, 5 cm")
+                run.board("robot0.pic").set_memory(0x2600, b"\x01")
+                step = run.step(to="600 ms")
+                self.assertEqual([act["act"] for act in step.acts], ["move carton to 20 cm, 5 cm"])
+                self.assertIn("done", step.acts[0])
+                ended = run.end()
+                self.assertTrue(ended.success, ended.why)
+                hashes.append((ended.report["trace_sha256"], ended.report["simulated_s"]))
+        self.assertEqual(hashes[0], hashes[1])
+
+    def test_a_driven_run_is_the_run_itself(self):
+        traces = []
+        for steps in ((), ("123 ms", "1 s")):
+            with self.begun(f"out{len(steps)}") as run:
+                for time in steps:
+                    run.step(to=time)
+                with self.assertRaises(puckloop.RunEnded) as ended:
+                    run.step(for_="10 s")
+                self.assertTrue(ended.exception.success, str(ended.exception))
+                traces.append(run.ended.report["trace_sha256"])
+        self.assertEqual(traces[0], traces[1])
+
+    def test_a_snapshot_is_gone_on_from_with_a_fault(self):
+        with self.begun("a") as run:
+            run.step(to="400 ms")
+            snapshot = run.save(self.folder / "run.snapshot")
+        with puckloop.from_snapshot(snapshot, out=self.folder / "b") as run:
+            self.assertEqual(run.time_ps, 400_000_000_000)
+            run.capture(link="robot0.uart", sender="robot0.pic")
+            run.fault("drop link=robot0.uart from=robot0.pic begin=500ms")
+            run.step(to="800 ms")
+            late = [frame for frame in run.frames() if frame.time_s > 0.51]
+            self.assertTrue(all(frame.fault == "drop" for frame in late), late[:1])
+            self.assertTrue(run.end().report["faults"])
+
+    def test_text_is_expected_in_simulated_time(self):
+        with self.begun() as run:
+            dut = run.dut("robot0.uart", "robot0.linux")
+            self.assertEqual(dut.expect("\x01", timeout="1 s")[-1], "\x01")  # the wake-up
+            with self.assertRaisesRegex(AssertionError, "did not send 'never'"):
+                dut.expect("never", timeout="50 ms")
+
+    def test_what_cannot_begin(self):
+        with self.assertRaisesRegex(puckloop.StartError, "nowhere.toml"):
+            puckloop.start(self.folder / "nowhere.toml")
+        with self.assertRaisesRegex(puckloop.StartError, "--paced"):
+            puckloop.start("hello", options=["--paced"])
+
+    def test_a_client_that_goes_away_ends_the_run(self):
+        run = self.begun()
+        run.step(to="100 ms")
+        run._line.close()
+        self.assertEqual(run._process.wait(60), 1)
+        report = json.loads((run.results / "report.json").read_text())
+        self.assertFalse(report["success"])
+        self.assertIn("its client went away", report["ended_why"])
+
+
+if __name__ == "__main__":
+    unittest.main()

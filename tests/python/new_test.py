@@ -1,0 +1,64 @@
+"""`puckloop new`: what it writes is checked, runs, and passes its own test; scenarios work where they are copied to."""
+
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+from kit import PROGRAM, SOURCE, InFolder, puckloop
+
+
+class New(InFolder):
+    def test_a_project_that_works(self):
+        made = puckloop("new", "my_robot", folder=self.folder)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        project = self.folder / "my_robot"
+        scenario = project / "my_robot.toml"
+        self.assertTrue(scenario.read_text().startswith("#:schema ./scenario.schema.json\n"))
+        json.loads((project / "scenario.schema.json").read_text())
+        json.loads((project / ".vscode/settings.json").read_text())
+        checked = puckloop("check", scenario)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        own = subprocess.run([sys.executable, "-B", "-m", "unittest"], cwd=project, capture_output=True, text=True,
+                             env={**os.environ, "PUCKLOOP": PROGRAM}, check=False)
+        self.assertEqual(own.returncode, 0, own.stderr)
+        self.refused(puckloop("new", "my_robot", folder=self.folder), "my_robot", "is there already")
+
+    def test_the_controller_in_c_does_the_same(self):
+        puckloop("new", "robot", folder=self.folder)
+        project = self.folder / "robot"
+        if subprocess.run(["make"], cwd=project, capture_output=True, check=False).returncode != 0:
+            self.skipTest("no C compiler")
+        ends = []
+        for program in ("controller.py", "controller"):
+            ended = puckloop("run", project / "robot.toml", "--in-process", "--duration", "4 s", "--out",
+                             self.folder / program, "--linux", project / program)
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            report = json.loads((self.folder / program / "report.json").read_text())
+            ends.append(report["nodes"]["robot0.pic"]["wheel_steps"])
+        self.assertEqual(ends[0], ends[1])
+
+    def test_names_that_cannot_be(self):
+        for name in ("", "../x", "a b", "x" * 65):
+            self.refused(puckloop("new", name, folder=self.folder), "cannot be a project's name")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+class Copied(InFolder):
+    def test_a_shipped_scenario_in_a_folder_of_the_users_own(self):
+        text = (SOURCE / "scenarios/hello.toml").read_text()
+        for firmware in ("own", "epuck.hex"):
+            copy = self.file("mine.toml", text.replace("../firmware/epuck/epuck.hex", firmware))
+            ended = puckloop("run", copy, "--in-process", "--duration", "2 s", "--out", self.folder / "out")
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            files = json.loads((self.folder / "out/report.json").read_text())["files"]
+            self.assertEqual(os.path.realpath(files[0]["file"]), str(SOURCE / "firmware/epuck/epuck.hex"))
+
+    def test_a_shipped_scenario_by_its_name(self):
+        ended = puckloop("run", "hello", "--in-process", "--duration", "1.1 s", "--out", self.folder / "out")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

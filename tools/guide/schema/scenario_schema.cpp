@@ -1,0 +1,225 @@
+#include "cosim/faults/kinds/kind_table.h"
+#include "scenarios/reader/events/action_forms.h"
+#include "tools/guide/schema/schema_kit.h"
+#include "tools/guide/schema/schemas.h"
+
+#include <set>
+#include <string>
+
+namespace puckloop::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+// clang-format off
+constexpr SchemaKey kRun[]{
+    {"duration", "time", "simulated time; without it the Linux programs end the run"},
+    {"seed", "integer", "of every random stream; the same seed gives the same trace"},
+    {"record_every", "time", "period of trajectory.csv and sensors.csv; default 100 ms"},
+    {"uart_baud", "number", "nominal rate of the UART links; default 115200"},
+    {"i2c_clock", "frequency", "SCL of the Linux boards; default 100 kHz"},
+    {"allow", "texts", "failures that leave the run successful: program, silent_line, hung"},
+    {"record_ir", "flag", "light of the range-and-bearing boards, chip by chip, in trace.csv"}};
+constexpr SchemaKey kArena[]{
+    {"size", "lengths2", "length and width of a rectangle round the origin"},
+    {"corners", "any", "in place of size: any polygon, [[\"x\", \"y\"], ...]"},
+    {"walls", "flag", "default true"}, {"wall_height", "length", "default 10 cm"},
+    {"wall_thickness", "length", "default 2 cm"}, {"reflectivity", "ratio", "of the walls; default 1"},
+    {"floor_grey", "ratio", "1 is white, 0 black"}};
+constexpr SchemaKey kWall[]{
+    {"name", "text", ""}, {"from", "lengths2", "one end of its centre line"}, {"to", "lengths2", "the other end"},
+    {"thickness", "length", "default 1 cm"}, {"height", "length", "default 10 cm"}, {"reflectivity", "ratio", "default 1"}};
+constexpr SchemaKey kBox[]{
+    {"name", "text", ""}, {"centre", "lengths2", ""}, {"heading", "angle", "default 0"},
+    {"size", "lengths3", "length, width, height"}, {"mass", "mass", "makes it movable"}, {"reflectivity", "ratio", "default 1"}};
+constexpr SchemaKey kCylinder[]{
+    {"name", "text", ""}, {"centre", "lengths2", ""}, {"radius", "length", ""}, {"height", "length", "default 10 cm"},
+    {"mass", "mass", "makes it movable"}, {"reflectivity", "ratio", "default 1"}};
+constexpr SchemaKey kLamp[]{
+    {"name", "text", ""}, {"centre", "lengths2", ""}, {"height", "length", "of the bulb; default 5 cm"},
+    {"intensity", "ratio", "default 1"}};
+constexpr SchemaKey kSpeaker[]{
+    {"name", "text", ""}, {"position", "lengths2", ""}, {"level", "number", "volume in counts of a plain microphone 10 cm before it"},
+    {"height", "length", "default 3 cm"}, {"on", "time", "when it begins"}, {"off", "time", "when it ends"},
+    {"duration", "time", "in place of off"}, {"every", "time", "it sounds again so much later"},
+    {"times", "integer", "so often"}, {"wave", "text", "form of its sound"}, {"tone", "frequency", ""}, {"sweep_to", "frequency", ""}};
+constexpr SchemaKey kPatch[]{
+    {"name", "text", ""}, {"centre", "lengths2", ""}, {"heading", "angle", ""}, {"grey", "ratio", "1 is white, 0 black"},
+    {"shape", "text", "rectangle (default) or disc"}, {"radius", "length", "of a disc"}, {"size", "lengths2", "of a rectangle"}};
+constexpr SchemaKey kLight[]{{"ambient", "ratio", "0 dark, 1 an ordinary room, 12 the brightest that sensors distinguish"}};
+constexpr SchemaKey kRobot[]{
+    {"name", "text", "names its nodes, links and log files; default robot0, robot1, ..."},
+    {"position", "lengths2", "x east, y north of the arena's centre"}, {"heading", "angle", "from +x counter-clockwise; default 0"},
+    {"ground_sensor", "flag", "the I2C board at 0x60; default true"}, {"rgb_turret", "flag", "the I2C board at 0x61; default true"}};
+constexpr SchemaKey kPic[]{
+    {"firmware", "text", "image (HEX, ELF, COFF): a path relative to this file, \"own\", or a shipped image's name"},
+    {"crystal_error", "ratio", "such as \"20 ppm\""}, {"adc_noise", "number", "counts, standard deviation; default 2"},
+    {"selector", "integer", "position of the rotary selector, 0..15"},
+    {"uart1", "text", "plugged in: script:FILE, pty or tcp:PORT"}, {"uart2", "text", "likewise, without a Linux board"},
+    {"reset", "texts", "times at which the reset button is pressed"}, {"nvm", "text", "file that keeps flash and EEPROM"},
+    {"boot", "time", "until the firmware listens"}, {"camera", "text", "po3030k, po6030k, po8030d or none"},
+    {"camera_turned", "flag", "it lies on its side"}, {"board", "text", "revision: 1.2 or 1.3"},
+    {"errata", "texts", "of the chip"}};
+constexpr SchemaKey kModule[]{
+    {"number", "integer", ""}, {"name", "text", "that others see"}, {"pin", "text", ""}, {"address", "text", "08:00:17:2C:00:01"},
+    {"mode", "text", "automatic or command"}, {"boot", "time", "from reset to READY"}, {"computer", "text", "at the other end: pty, tcp:PORT, script:FILE"},
+    {"connect", "time", "when the computer begins to link"}};
+constexpr SchemaKey kRab[]{
+    {"firmware", "text", "image for the dsPIC33FJ256GP710"}, {"crystal_error", "ratio", ""},
+    {"adc_noise", "number", "counts; default 1"}, {"nvm", "text", "file that keeps flash"}};
+constexpr SchemaKey kProgram[]{
+    {"program", "texts", "path and arguments; a bare name is looked for beside puckloop, then in PATH"},
+    {"hostname", "text", ""}, {"start", "time", "default 0"}, {"restart", "texts", "times at which it is killed and started again"},
+    {"folder", "text", "to work in, below the results"},
+    {"end_signal", "text", "when the run ends; default TERM"}, {"grace", "time", "from the end signal to SIGKILL; default 2 s"},
+    {"tty_batch", "time", ""}, {"i2c_hold", "time", ""}, {"oversleep", "time", ""}, {"oversleep_jitter", "time", ""}};
+constexpr SchemaKey kSignal[]{{"at", "time", ""}, {"send", "text", "INT, TERM, USR1, ..."}};
+constexpr SchemaKey kLinux[]{
+    {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
+    {"save_frames", "integer", "every so-many-th frame is kept as a picture"}};
+constexpr SchemaKey kIrcom[]{{"record", "flag", "every edge of light in trace.csv"}};
+constexpr SchemaKey kTam[]{
+    {"name", "text", "default tam0, tam1, ..."}, {"position", "lengths2", "of its middle"}, {"heading", "angle", "the way its opening looks"},
+    {"reflectivity", "ratio", "of its walls"}, {"firmware", "text", "image for the ATmega1284P, or \"own\""},
+    {"boot_loader", "text", "image below the firmware"}, {"network", "integer", "DIP switches, 0..3"}, {"battery", "voltage", "default 3.7 V"},
+    {"console", "text", "plugged in: script:FILE, pty or tcp:PORT"}, {"console_baud", "number", "default 57600"},
+    {"start", "time", "when it is switched on"}, {"reset", "texts", "times at which its reset button is pressed"},
+    {"resonator_error", "ratio", ""}, {"adc_noise", "number", "counts; default 0.5"}};
+constexpr SchemaKey kXbee[]{
+    {"address", "text", "16 hex digits"}, {"node_id", "text", "NI"}, {"channel", "integer", "CH, 11..26"}, {"boot", "time", "from reset to modem status"}};
+constexpr SchemaKey kFitted[]{{"fitted", "flag", "default true"}};
+constexpr SchemaKey kRadio[]{
+    {"range", "length", "default 30 m"}, {"exponent", "number", "by which power falls with distance"}, {"loss", "ratio", ""}, {"processing", "time", ""}};
+constexpr SchemaKey kCoordinator[]{
+    {"position", "lengths2", ""}, {"network", "integer", "0..3"}, {"uart", "text", "plugged in: script:FILE, pty or tcp:PORT"},
+    {"baud", "number", "default 9600"}, {"tty", "text", "default /dev/ttyUSB0"}};
+constexpr SchemaKey kBluetooth[]{
+    {"range", "length", ""}, {"discovery", "time", ""}, {"name_time", "times2", "mean, standard deviation"},
+    {"link_time", "times2", ""}, {"release_time", "times2", ""}};
+constexpr SchemaKey kCan[]{{"name", "text", ""}, {"controllers", "texts", "robot0.pic.can1, ..."}};
+constexpr SchemaKey kFault[]{
+    {"name", "text", ""}, {"link", "text", "robot0.uart, robot0.i2c, ..."}, {"node", "text", "robot0.pic, ..."},
+    {"from", "text", "the end whose messages suffer"}, {"at", "time", ""}, {"begin", "time", ""}, {"end", "time", ""}, {"for", "time", "in place of end"},
+    {"count", "integer", "at most so often"}, {"probability", "ratio", ""}, {"period", "time", ""},
+    {"p", "ratio", "Gilbert-Elliott: into a burst"}, {"r", "ratio", "out of it"}, {"1-h", "ratio", "loss within"}, {"1-k", "ratio", "loss outside"},
+    {"skip", "integer", "so many first ones do not suffer"}, {"every", "integer", "only each so-many-th suffers"},
+    {"bytes", "texts", ""}, {"position", "integer", ""}, {"match", "text", "bytes in hexadecimal"}, {"offset", "integer", ""},
+    {"may_not_fire", "flag", "no warning if it never fires"}};
+constexpr SchemaKey kWhen[]{
+    {"robot", "text", ""}, {"after", "text", "label of an event"}, {"near", "text", ""}, {"distance", "length", ""}, {"enters", "lengths2", ""}, {"radius", "length", ""},
+    {"size", "lengths2", ""}, {"travels", "length", ""}, {"led", "text", ""}, {"on", "flag", ""}, {"wheels", "text", "turn or stop"}};
+constexpr SchemaKey kEvent[]{
+    {"label", "text", ""}, {"at", "time", ""}, {"every", "time", ""}, {"delay", "time", "behind its condition"}, {"count", "integer", "so often"}};
+// clang-format on
+
+/// Physical parameters by their dotted names, as tables in tables (puckloop run --list-parameters).
+ordered_json parameters_schema() {
+    return {{"type", "object"},
+            {"description", "physical parameters (puckloop run --list-parameters)"},
+            {"additionalProperties", true}};
+}
+
+ordered_json program_schema(std::string_view about, std::span<const SchemaKey> more) {
+    ordered_json table = table_schema(about, kProgram, {"program"});
+    add_keys(table, more);
+    table["properties"]["signals"] =
+        list_schema(table_schema("signals that it gets", kSignal, {"at", "send"}));
+    return table;
+}
+
+ordered_json robot_schema() {
+    ordered_json pic = table_schema("the main board", kPic, {"firmware"});
+    pic["properties"]["bluetooth"] = table_schema("the Bluetooth module on UART1", kModule);
+    ordered_json robot = table_schema("an e-puck", kRobot, {"position", "pic"});
+    ordered_json& properties = robot["properties"];
+    properties["pic"] = std::move(pic);
+    properties["rab"] = table_schema("the range-and-bearing board", kRab, {"firmware"});
+    properties["linux"] = program_schema("the Linux board and its program", kLinux);
+    properties["parameters"] = parameters_schema();
+    return robot;
+}
+
+ordered_json xbee_schema(std::span<const SchemaKey> more) {
+    ordered_json xbee = table_schema("radio module", kXbee);
+    add_keys(xbee, more);
+    xbee["properties"]["parameters"] = {{"type", "object"},
+                                        {"description", "AT parameters"},
+                                        {"additionalProperties", {{"type", "integer"}}}};
+    return xbee;
+}
+
+ordered_json tam_schema() {
+    ordered_json tam = table_schema("a TAM: booth and board", kTam, {"position"});
+    tam["properties"]["xbee"] = xbee_schema(kFitted);
+    return tam;
+}
+
+ordered_json coordinator_schema() {
+    ordered_json place = program_schema("the coordinator's radio module and computer", kCoordinator);
+    place.erase("required");
+    place["properties"].update(xbee_schema({})["properties"]);
+    return place;
+}
+
+/// Kinds and their keys come from the table that carries them out.
+ordered_json fault_schema() {
+    ordered_json fault = table_schema("a fault of a link or node (docs/faults.md)", kFault);
+    std::set<std::string> kinds;
+    for (const cosim::KindInfo& kind : cosim::all_kinds()) {
+        kinds.emplace(kind.name);
+        if (!kind.alias.empty()) kinds.emplace(kind.alias);
+        for (const cosim::ParameterInfo& parameter : kind.parameters) {
+            ordered_json& property = fault["properties"][std::string(parameter.key)];
+            if (property.is_null()) property = ordered_json::object();
+        }
+    }
+    fault["properties"]["kind"] = {{"type", "string"}, {"enum", kinds}, {"default", "drop"}};
+    return fault;
+}
+
+/// What an event does comes from the table of commands; a new thing has the keys of its own table.
+ordered_json event_schema() {
+    ordered_json event = table_schema("something that happens to the world", kEvent);
+    ordered_json& properties = event["properties"];
+    properties["when"] = table_schema("a condition, in place of a time", kWhen);
+    for (const scenarios::ActionForm& form : scenarios::action_forms()) {
+        properties[std::string(form.verb)] = {{"type", "string"}, {"description", form.help}};
+        for (const scenarios::ActionKey& key : form.keys)
+            if (!properties.contains(key.name)) properties[std::string(key.name)] = ordered_json::object();
+    }
+    for (const scenarios::ThingForm& form : scenarios::thing_forms())
+        for (const scenarios::ActionKey& key : form.keys)
+            if (!properties.contains(key.name)) properties[std::string(key.name)] = ordered_json::object();
+    return event;
+}
+
+}  // namespace
+
+ordered_json scenario_schema() {
+    ordered_json schema = schema_head("scenario", "a puckloop scenario (docs/scenario.md)");
+    schema.update(table_schema("world, robots, TAMs, faults and events of a run", {}));
+    ordered_json& properties = schema["properties"];
+    properties["run"] = table_schema("length, seed and records", kRun);
+    properties["arena"] = table_schema("floor and walls", kArena);
+    properties["wall"] = list_schema(table_schema("a wall", kWall, {"from", "to"}));
+    properties["box"] = list_schema(table_schema("a box", kBox, {"centre", "size"}));
+    properties["cylinder"] = list_schema(table_schema("a cylinder", kCylinder, {"centre", "radius"}));
+    properties["lamp"] = list_schema(table_schema("a lamp", kLamp, {"centre"}));
+    properties["speaker"] = list_schema(table_schema("a loudspeaker", kSpeaker, {"position", "level"}));
+    properties["floor_patch"] = list_schema(table_schema("paper on the floor", kPatch, {"centre", "grey"}));
+    properties["light"] = table_schema("the room's light", kLight);
+    properties["parameters"] = parameters_schema();
+    properties["robot"] = list_schema(robot_schema());
+    properties["tam"] = list_schema(tam_schema());
+    properties["radio"] = table_schema("the air between radio modules", kRadio);
+    properties["coordinator"] = coordinator_schema();
+    properties["bluetooth"] = table_schema("the air between Bluetooth modules", kBluetooth);
+    properties["can_bus"] = list_schema(table_schema("wires between CAN modules", kCan, {"controllers"}));
+    properties["ircom"] = table_schema("words by the light of proximity sensors", kIrcom);
+    properties["fault"] = list_schema(fault_schema());
+    properties["event"] = list_schema(event_schema());
+    return schema;
+}
+
+}  // namespace puckloop::tools
