@@ -35,7 +35,7 @@ void write_dump(const std::string& path, const RecordedTrace& lines, const std::
     write_output(path, [&](std::ostream& out) {
         if (watch == nullptr) return export_vcd(lines, out);
         WatchedValues values(node, *watch);
-        export_vcd_with(lines, out, &values);
+        export_vcd_with(lines, out, values);
     });
 }
 

@@ -64,7 +64,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
             i2c.add(*row, *phase);
         else if (const auto* signal = std::get_if<cosim::Signal>(&row->payload))
             static_cast<void>(rab.add(*row, *signal) || ircom.add(*row, *signal));
-        else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row->payload))
+        else if (const auto* radio = radio_on_air(*row))
             decode_radio(*row, *radio, take);
         else if (const auto can = can_on_bus(*row))
             decode_can(*row, *can, take);

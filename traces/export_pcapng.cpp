@@ -22,12 +22,18 @@ namespace {
 
 using cosim::Time;
 using Bytes = pcapng::Bytes;
-using pcapng::LinkType, pcapng::Writer;
+using pcapng::LinkType;
+using Writer = pcapng::OrderedWriter;
 
 // Events of LINKTYPE_RTAC_SERIAL.
 enum : std::uint8_t { kDataSent = 1, kFramingError = 7, kParityError = 8, kBreak = 9 };
 
 constexpr std::size_t kMostInPacket = 256;
+/// How late a row may be, behind the begin of what it holds: a frame at 120 bit/s, a byte whose clock is
+/// held.
+constexpr Time kLatest = 100 * cosim::kMillisecond;
+/// A transfer that nobody ends holds up the others for no longer.
+constexpr Time kLongestOpen = 10 * cosim::kSecond;
 
 void big(Bytes& out, std::uint64_t value, int bytes) {
     for (int i = bytes - 1; i >= 0; --i)
@@ -65,6 +71,7 @@ class Serial {
     }
 
     LineReceiver& receiver() { return receiver_; }
+    Time begun() const { return empty_ ? cosim::kNever : start_; }
     /// Nothing can follow without a pause any more.
     bool rests(Time now) const { return empty_ || now > settled_; }
 
@@ -147,6 +154,9 @@ class Segment {
         comment_.clear();
     }
 
+    /// kNever: nothing is open.
+    Time begun() const { return packet_.empty() ? cosim::kNever : start_; }
+
   private:
     static constexpr std::size_t kHeader = 5;
 
@@ -181,7 +191,7 @@ struct PcapngStream::Parts {
     void add(const cosim::TraceRow& row) {
         while (const FaultMark* mark = alone.next(row.time))
             add(*mark);
-        // Bursts that have ended, first: packets come in the order in which they were complete.
+        // Bursts that have ended, first.
         for (auto one = open.begin(); one != open.end();) {
             if (!(*one)->rests(row.time)) {
                 ++one;
@@ -199,7 +209,7 @@ struct PcapngStream::Parts {
             if (std::find(open.begin(), open.end(), &sender) == open.end()) open.push_back(&sender);
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row.payload)) {
             transfers.add(row, *phase);
-        } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload)) {
+        } else if (const auto* radio = radio_on_air(row)) {
             const auto octets = radio->octets.view();
             writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio),
                           radio->start, {octets.begin(), octets.end()}, fault_text(row.fault));
@@ -209,6 +219,17 @@ struct PcapngStream::Parts {
                           failed ? fmt::format("{} {}: {}", heard->sender, heard->text(), heard->error_text())
                                  : heard->sender);
         }
+        release(row.time);
+    }
+
+    /// What nothing of this time and later can precede.
+    void release(Time now) {
+        Time end = now - kLatest;
+        for (const Serial* one : open)
+            end = std::min(end, one->begun());
+        for (const auto& [link, segment] : segments)
+            end = std::min(end, segment.begun());
+        writer.release(std::max(end, now - kLongestOpen));
     }
 
     void end() {
@@ -220,6 +241,7 @@ struct PcapngStream::Parts {
             add(*mark);
         for (auto& [link, segment] : segments)
             segment.flush(writer);
+        writer.release(cosim::kNever);
     }
 
     /// A packet of its own, as one of those that programs hand to Wireshark: the name of the dissector, text.

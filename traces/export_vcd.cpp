@@ -2,11 +2,14 @@
 #include "traces/edges.h"
 #include "traces/export.h"
 
+#include "base/error.h"
 #include "protocols/uart_sampling.h"
+#include "traces/received.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 
@@ -65,7 +68,7 @@ class Values {
         } else if (const auto* signal = std::get_if<cosim::Signal>(&row.payload)) {
             const std::string name = row.signal.empty() ? fmt::format("signal{}", signal->id) : row.signal;
             emit_(row.time, variable(row, name, "real", 64, "r0 "), fmt::format("r{} ", signal->value));
-        } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload)) {
+        } else if (const auto* radio = radio_on_air(row)) {
             const std::size_t octets = variable(row, "octets", "string", 1, "s ");
             emit_(radio->start, octets, fmt::format("s{} ", hex_of(radio->octets)));
             emit_(radio->start + radio->duration, octets, "s ");
@@ -120,8 +123,35 @@ bool is_drawn(const Line& line) {
     return line.kind != Line::Kind::Pin;
 }
 
-void declare(std::ostream& out, const std::vector<Variable>& variables) {
-    out << "$version puckloop $end\n$timescale 1 ps $end\n";
+struct Unit {
+    const char* name;
+    Time length;
+};
+constexpr std::array<Unit, 7> kUnits{{{"1 us", cosim::kMicrosecond},
+                                      {"100 ns", 100 * cosim::kNanosecond},
+                                      {"10 ns", 10 * cosim::kNanosecond},
+                                      {"1 ns", cosim::kNanosecond},
+                                      {"100 ps", 100},
+                                      {"10 ps", 10},
+                                      {"1 ps", 1}}};
+
+/// The coarsest in which a bit, or the clock of a bus, has sixteen: sigrok makes a sample of each.
+Unit fitting_unit(Time shortest_bit) {
+    constexpr Time kUnitsOfBit = 16;
+    const auto fits = [&](const Unit& unit) { return unit.length <= shortest_bit / kUnitsOfBit; };
+    const auto found = std::find_if(kUnits.begin(), kUnits.end(), fits);
+    return found != kUnits.end() ? *found : kUnits.back();
+}
+
+Unit unit_named(const std::string& name) {
+    for (const Unit& unit : kUnits)
+        if (name == unit.name) return unit;
+    throw InputError("", "--timescale", fmt::format("'{}' is no unit", name),
+                     "1 us, 100 ns, 10 ns, 1 ns, 100 ps, 10 ps or 1 ps");
+}
+
+void declare(std::ostream& out, const std::vector<Variable>& variables, const Unit& unit) {
+    out << "$version puckloop $end\n$timescale " << unit.name << " $end\n";
     std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> scopes;
     for (std::size_t n = 0; n < variables.size(); ++n)
         scopes[{variables[n].scope, variables[n].from}].push_back(n);
@@ -145,13 +175,23 @@ struct Change {
     std::string value;
 };
 
+void write_vcd(const RecordedTrace& trace, std::ostream& out, VcdValues* others,
+               const std::string& timescale);
+
 }  // namespace
 
-void export_vcd(const RecordedTrace& trace, std::ostream& out) {
-    export_vcd_with(trace, out, nullptr);
+void export_vcd(const RecordedTrace& trace, std::ostream& out, const std::string& timescale) {
+    write_vcd(trace, out, nullptr, timescale);
 }
 
-void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* others) {
+void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues& others) {
+    write_vcd(trace, out, &others, "1 ps");
+}
+
+namespace {
+
+void write_vcd(const RecordedTrace& trace, std::ostream& out, VcdValues* others,
+               const std::string& timescale) {
     // First pass: which variables there are, and how late their changes become known.
     Time now = 0, late = 0;
     Values found([&](Time time, std::size_t, const std::string&) { late = std::max(late, now - time); });
@@ -185,13 +225,14 @@ void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* o
         place[n] = declared.size();
         if (n >= values_from || is_drawn(surveyed.lines[n])) declared.push_back(variables[n]);
     }
-    declare(out, declared);
+    const Unit unit = timescale.empty() ? fitting_unit(surveyed.shortest_bit) : unit_named(timescale);
+    declare(out, declared, unit);
 
     ReorderBuffer<Change> buffer;
     Time written = -1;
     const auto write_until = [&](Time end) {
         while (!buffer.empty() && buffer.first() < end) {
-            const Time time = buffer.first();
+            const Time time = buffer.first() / unit.length;
             const Change change = buffer.pop();
             if (time != written) out << '#' << time << '\n';
             written = time;
@@ -234,5 +275,7 @@ void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* o
     others_until(cosim::kNever);
     write_until(cosim::kNever);
 }
+
+}  // namespace
 
 }  // namespace puckloop::tools

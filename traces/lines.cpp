@@ -2,6 +2,7 @@
 
 #include "protocols/uart_sampling.h"
 #include "traces/can_frames.h"
+#include "traces/received.h"
 
 #include <fmt/format.h>
 
@@ -72,7 +73,7 @@ void LineRenderer::add(const cosim::TraceRow& row) {
         shortest_ = std::min(shortest_, std::max<Time>(heard->bit, 1));
         for (const auto& [begin, end] : heard->dominant())
             active(wire, begin, end);
-    } else if (const auto* sent = std::get_if<cosim::RadioFrame>(&row.payload)) {
+    } else if (const auto* sent = radio_on_air(row)) {
         const cosim::RadioFrame& radio = *sent;
         if (!keeps_from_arriving(row.fault))
             active(line(row.link, row.from, "on_air", Line::Kind::OnAir), radio.start,

@@ -3,6 +3,9 @@
 // packet (draft-ietf-opsawg-pcapng). Little-endian, padded to 32 bits.
 
 #include "cosim/core/time.h"
+#include "traces/reorder_buffer.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -83,7 +86,7 @@ class Writer {
         block(kPacket, body);
     }
 
-  private:
+  protected:
     void block(std::uint32_t type, const Bytes& body) {
         constexpr std::size_t kFrame = 12;
         Bytes all;
@@ -96,6 +99,39 @@ class Writer {
 
     std::ostream& out_;
     std::map<std::string, std::uint32_t> interfaces_;
+};
+
+/// Packets in the order of their times although they come as they are complete: each is kept until nothing
+/// earlier can come, as release() states. One that comes later still has the time of the packet before it,
+/// and its own in the comment.
+class OrderedWriter : public Writer {
+  public:
+    using Writer::Writer;
+
+    void packet(std::uint32_t interface, Time time, Bytes data, std::string comment) {
+        kept_.push(std::max<Time>(time, 0), {interface, std::move(data), std::move(comment)});
+    }
+    /// Writes what is kept and begins before `end`.
+    void release(Time end) {
+        while (!kept_.empty() && kept_.first() < end) {
+            const Time time = kept_.first();
+            Packet one = kept_.pop();
+            if (time < written_)
+                one.comment += fmt::format("{}began at {} s", one.comment.empty() ? "" : "; ",
+                                           cosim::format_seconds(time));
+            written_ = std::max(written_, time);
+            Writer::packet(one.interface, written_, one.data, one.comment);
+        }
+    }
+
+  private:
+    struct Packet {
+        std::uint32_t interface = 0;
+        Bytes data;
+        std::string comment;
+    };
+    ReorderBuffer<Packet> kept_;
+    Time written_ = 0;
 };
 
 }  // namespace puckloop::tools::pcapng

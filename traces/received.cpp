@@ -31,6 +31,11 @@ ReceivedCharacter as_sent(const cosim::UartFrame& frame) {
 
 }  // namespace
 
+const cosim::RadioFrame* radio_on_air(const cosim::TraceRow& row) {
+    const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload);
+    return radio != nullptr && radio->duration > 0 ? radio : nullptr;
+}
+
 std::optional<protocols::UartReceiver> setting_of(const cosim::TraceRow& row, const cosim::UartFrame& frame) {
     if (row.fault != cosim::FaultKind::None || frame.is_break != 0 || frame.bit_period <= 0)
         return std::nullopt;

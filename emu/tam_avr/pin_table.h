@@ -38,10 +38,10 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {A, 0, "ir_sense_left", Analog},
     {A, 1, "battery_sense", Analog},
     {A, 2, "ir_sense_right", Analog},
-    {B, 1, "prox_emit", Output, kProximityEmit},
-    {B, 2, "xbee_net_1", Input, kNetworkSwitch + 1},
-    {B, 3, "pwr_clear", Output, kPowerClear},
-    {B, 4, "xbee_net_0", Input, kNetworkSwitch},
+    {B, 1, "proximity_emit", Output, kProximityEmit},
+    {B, 2, "network_switch_1", Input, kNetworkSwitch + 1},
+    {B, 3, "power_clear", Output, kPowerClear},
+    {B, 4, "network_switch_0", Input, kNetworkSwitch},
     {C, 0, "scl", PulledHigh},
     {C, 1, "sda", PulledHigh},
     {C, 2, "xbee_rts", Output, kXBeeRts},
@@ -52,8 +52,8 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {D, 3, "xbee_din", PulledHigh},
     {D, 4, "xbee_wake", Output, kXBeeWake},
     {D, 5, "xbee_cts", PulledHigh},
-    {D, 6, "prox_sense", Input, kProximitySense},
-    {D, 7, "xbee_rst", Output, kXBeeReset},
+    {D, 6, "proximity_sense", Input, kProximitySense},
+    {D, 7, "xbee_reset", Output, kXBeeReset},
 });
 }  // namespace wiring
 

@@ -52,11 +52,84 @@ TEST_CASE("a value change dump holds every kind of message and is in order") {
             CHECK(time > before);
             before = time;
         }
-    CHECK_THAT(vcd, Catch::Contains("$timescale 1 ps $end") && Catch::Contains("$scope module wire $end") &&
+    CHECK_THAT(vcd, Catch::Contains("$timescale 100 ns $end") && Catch::Contains("$scope module wire $end") &&
                         Catch::Contains("scl $end") && Catch::Contains("sstart ") &&
                         Catch::Contains("sack ") && Catch::Contains("$var real 64") &&
                         Catch::Contains("wheel_left") && Catch::Contains("s007eff ") &&
                         Catch::Contains("sflip "));
+}
+
+TEST_CASE("a value change dump is as coarse as its shortest bit allows, or as is asked for") {
+    const auto scale_of = [](const std::vector<TraceRow>& rows, const std::string& more) {
+        const std::string trace = write_trace("scale.csv", rows);
+        const std::string vcd =
+            tests::puckloop(fmt::format("trace export {} --format vcd -o - {}", trace, more)).out;
+        return lines_of(vcd).at(1);
+    };
+    const auto uart = [](int baud) {
+        return std::vector<TraceRow>{uart_row("wire", "left", {kMillisecond, kSecond / baud, 0x4e})};
+    };
+    CHECK(scale_of(uart(9600), "") == "$timescale 1 us $end");
+    CHECK(scale_of(uart(115200), "") == "$timescale 100 ns $end");
+    CHECK(scale_of(uart(2000000), "") == "$timescale 10 ns $end");
+    CHECK(scale_of(uart(115200), "--timescale '1 ps'") == "$timescale 1 ps $end");
+    const std::string trace = write_trace("scale.csv", uart(115200));
+    CHECK(tests::puckloop(fmt::format("trace export {} -o x.sr --timescale '1 ns'", trace)).status == 2);
+    // The start bit begins at 1 ms, bit 1 (high) two bits later.
+    const std::string vcd = tests::puckloop(fmt::format("trace export {} --format vcd -o -", trace)).out;
+    CHECK_THAT(vcd, Catch::Contains("\n#10000\n") && Catch::Contains("\n#10173\n"));
+}
+
+TEST_CASE("packets are in the order of their times, however late their rows are") {
+    if (!installed("tshark")) return;
+    // A burst that lasts 20 ms while frames of another line come and go, and a frame that is known late.
+    std::vector<TraceRow> rows;
+    const Time bit = kSecond / 115200;
+    for (int i = 0; i < 200; ++i)
+        rows.push_back(uart_row("long", "a", {kMillisecond + 10 * i * bit, bit, 0x55}));
+    for (int i = 0; i < 5; ++i)
+        rows.push_back(uart_row("short", "b", {(3 + 2 * i) * kMillisecond, bit, 0x21}));
+    TraceRow late = uart_row("late", "c", {4 * kMillisecond, bit, 0x42});
+    late.time = 800 * kMillisecond;
+    rows.push_back(late);
+    rows.push_back(uart_row("short", "b", {400 * kMillisecond, bit, 0x22}));
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const TraceRow& a, const TraceRow& b) { return a.time < b.time; });
+    const std::string trace = write_trace("order.csv", rows), file = trace + ".pcapng";
+    REQUIRE(tests::puckloop(fmt::format("trace export {} -o {}", trace, file)).status == 0);
+    const Called read = shell(fmt::format(
+        "tshark -r {} -T fields -e frame.time_epoch -e frame.interface_name -e frame.comment 2>/dev/null",
+        file));
+    double before = 0;
+    std::vector<std::string> packets = lines_of(read.out);
+    REQUIRE(packets.size() == 8);
+    for (const std::string& line : packets) {
+        INFO(line);
+        const double time = std::stod(line);
+        CHECK(time >= before);
+        before = time;
+    }
+    CHECK_THAT(packets.front(), Catch::Contains("long a") && Catch::StartsWith("0.001"));
+    CHECK_THAT(packets.at(6), Catch::Contains("late c") && Catch::Contains("began at 0.004"));
+}
+
+TEST_CASE("only frames that were on the air are frames of the radio") {
+    std::vector<TraceRow> rows;
+    for (int i = 0; i < 3; ++i) {
+        RadioFrame radio{(10 + i) * kMillisecond, i == 1 ? 0 : kMillisecond, {}, 12, -60};
+        radio.octets = Octets(std::vector<std::uint8_t>{0x00, 0x7e, 0xff});
+        rows.push_back({radio.start + radio.duration, "ether", "m.xbee", "", FaultKind::None, radio});
+    }
+    const std::string trace = write_trace("air.csv", rows);
+    const std::string vcd = tests::puckloop(fmt::format("trace export {} --format vcd -o -", trace)).out;
+    std::size_t frames = 0;
+    for (const std::string& line : lines_of(vcd))
+        if (line.starts_with("s007eff ")) ++frames;
+    CHECK(frames == 2);
+    CHECK(lines_of(tests::puckloop("trace decode " + trace).out).size() == 2);
+    if (!installed("tshark")) return;
+    REQUIRE(tests::puckloop(fmt::format("trace export {0} -o {0}.pcapng", trace)).status == 0);
+    CHECK(lines_of(shell(fmt::format("tshark -r {}.pcapng 2>/dev/null", trace)).out).size() == 2);
 }
 
 TEST_CASE("the same trace gives the same files") {

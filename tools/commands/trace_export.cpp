@@ -20,7 +20,7 @@ constexpr double kMostRate = 1e9;  // Hz
 constexpr double kLongest = 9e6;   // s
 
 struct Options {
-    std::string trace, format, output;
+    std::string trace, format, output, timescale;
     TraceSelection selection;
     double rate = 0.0;
 };
@@ -39,16 +39,21 @@ void run(const Options& options) {
     const std::string format = format_of(options);
     if (options.rate != 0.0 && format != "sr")
         throw InputError("", "--rate", fmt::format("a {} file has no sample rate", format), "--format sr");
+    if (!options.timescale.empty() && format != "vcd")
+        throw InputError("", "--timescale", fmt::format("a {} file has none", format), "--format vcd");
     const RecordedTrace trace(options.trace, options.selection);
     std::error_code error;
     if (options.output != "-" && std::filesystem::equivalent(trace.file(), options.output, error))
         throw InputError(options.output, "--output", "is the trace itself", "another file");
     check_output_file(options.output);
     if (format == "sr") return export_sr(trace, options.output, static_cast<std::uint64_t>(options.rate));
-    const auto write = format == "csv" ? export_csv : format == "vcd" ? export_vcd : export_pcapng;
     // What cannot be read is reported before a file is made of it.
     RecordedTrace::Cursor(trace).next();
-    write_output(options.output, [&](std::ostream& out) { write(trace, out); });
+    write_output(options.output, [&](std::ostream& out) {
+        if (format == "csv") return export_csv(trace, out);
+        if (format == "vcd") return export_vcd(trace, out, options.timescale);
+        export_pcapng(trace, out);
+    });
 }
 
 }  // namespace
@@ -79,6 +84,11 @@ void declare_trace_export(Command& trace) {
         ->check(one_of({"sr", "pcapng", "vcd", "csv"}));
     command->add_option("--rate", options->rate, "samples per second of an sr file; else 16 or more a bit")
         ->check(number_between(1.0, kMostRate));
+    command
+        ->add_option("--timescale", options->timescale,
+                     "unit of a vcd file's times, 1 us to 1 ps; else 16 or more a bit")
+        ->check(one_of({"1 us", "100 ns", "10 ns", "1 ns", "100 ps", "10 ps", "1 ps"}))
+        ->type_name("UNIT");
     add_selection(*command, options->selection);
     command->callback([options] { run(*options); });
 }
