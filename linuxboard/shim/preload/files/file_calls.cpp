@@ -315,7 +315,7 @@ SHIM_EXPORT ssize_t __read_chk(int fd, void* buffer, size_t size, size_t room) {
 
 SHIM_EXPORT ssize_t write(int fd, const void* data, size_t size) {
     if (OpenFile* file = open_file(fd)) return write_device(*file, data, size);
-    if (size <= PIPE_BUF || goes_straight(fd))
+    if (size <= PIPE_BUF || goes_straight(fd) || !is_channel(fd))
         return outside(fd, POLLOUT, [&] { return REAL(write)(fd, data, size); });
     // A pipe with room for something takes no more than that without blocking in the host.
     ssize_t written = 0;
