@@ -239,7 +239,7 @@ static void one_call(void) {
         CALL(fcntl(fd, F_SETFL, O_NONBLOCK | (draw(2) ? O_APPEND : 0)), EBADF, EINVAL);
         break;
     case 21:
-        CALL(fcntl(fd, F_GETLK, pointer()), EBADF, EFAULT, EINVAL);
+        CALL(fcntl(fd, F_GETLK, pointer()), EBADF, EFAULT, EINVAL, EOVERFLOW);
         break;
     case 22:
         CALL(clock_gettime((int)draw(20) - 4, pointer()), EFAULT, EINVAL);
