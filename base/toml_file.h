@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -18,6 +19,8 @@ using TomlTable = std::vector<std::pair<std::string, TomlValue>>;
 struct TomlValue {
     std::variant<bool, std::int64_t, double, std::string, TomlArray, TomlTable> data;
     int line = 0;  ///< 1-based; of a table: its header
+    /// The file that it is from, where that is not the one that was read first (an included one).
+    std::shared_ptr<const std::string> source{};
 
     bool is_table() const { return std::holds_alternative<TomlTable>(data); }
     bool is_array() const { return std::holds_alternative<TomlArray>(data); }

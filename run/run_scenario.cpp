@@ -16,7 +16,6 @@
 #include "run/report/results_folder.h"
 #include "run/report/run_log.h"
 #include "run/snapshots/snapshot_plan.h"
-#include "scenarios/reader/allowed_failures.h"
 
 #include <fmt/format.h>
 
@@ -163,7 +162,6 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const cosim::InterruptGuard* interrupt, bool driven_by_client) {
     check_files(setup);
     const std::vector<UsedFile> files = used_files(setup);
-    const std::vector<std::string> allowed = scenarios::allowed_failures(setup.scenario.file);
     const ResultsFolder folder(setup.out, result_files(setup));
     make_work_folders(setup);
     ReservedFile report(setup.out / "report.json", kReportBytes);
@@ -242,7 +240,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     if (!request.from.empty() && !outcome.went_on) outcome.text = request.from.string() + ": " + outcome.text;
     judge(outcome);
     std::vector<Failure> failures;
-    if (outcome.success) failures = failures_of(setup, allowed, outcome);
+    if (outcome.success) failures = failures_of(setup, setup.scenario.allow, outcome);
     judge_failures(failures, outcome);
     if (driven) driven->over(outcome);
     take_fault_results(setup, outcome);

@@ -213,7 +213,7 @@ void debug_board(RunSetup& setup, const std::string& assignment) {
 
 RunSetup set_up(const RunRequest& request) {
     RunSetup setup;
-    setup.scenario = scenarios::read_scenario(request.scenario);
+    setup.scenario = scenarios::read_scenario(request.scenario, settings_of(request));
     std::error_code none;
     if (std::filesystem::is_regular_file(request.scenario, none))
         setup.scenario_sha256 = sha256_of_file(request.scenario);

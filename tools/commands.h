@@ -9,6 +9,7 @@
 namespace puckloop::tools {
 
 void declare_run(Command& app, int& status);
+void declare_import(Command& app, int& status);
 void declare_replay(Command& app, int& status);
 void declare_act(Command& app, int& status);
 void declare_exec(Command& app, int& status);
@@ -29,6 +30,7 @@ int become_gap(char** words);
 // clang-format off
 inline constexpr std::array kCommands{
     declare_run,
+    declare_import,
     declare_replay,
     declare_act,
     declare_exec,

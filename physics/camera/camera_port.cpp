@@ -18,7 +18,7 @@ std::array<double, CameraSignals::kLampValues> values_of(const Lamp& lamp) {
 }  // namespace
 
 CameraPort::CameraPort(const WorldModel& model, std::vector<cosim::PortIndex> ports)
-    : signals_(model.description()), ports_(std::move(ports)) {
+    : signals_(model.description()), images_(floor_images(model.description())), ports_(std::move(ports)) {
     const World& world = model.description();
     for (std::size_t r = 0; r < world.robots.size(); ++r) {
         ring_.emplace_back();
@@ -51,7 +51,7 @@ CameraPort::CameraPort(const WorldModel& model, std::vector<cosim::PortIndex> po
             last_[signals_.shape(true, i) + k] = values_of(model.fixed(i))[k];
     for (; patches_ < world.patches.size(); ++patches_)
         for (std::size_t k = 0; k < kCameraPatchValues; ++k)
-            last_[signals_.patch(patches_) + k] = values_of(world.patches[patches_])[k];
+            last_[signals_.patch(patches_) + k] = values_of(world.patches[patches_], images_)[k];
 }
 
 void CameraPort::led(std::size_t robot, bool turret, std::uint16_t id, double value) {
@@ -122,8 +122,8 @@ void CameraPort::put_changes(const WorldModel& model) {
     patches_ = std::max(patches_, world.patches.size());
     for (std::size_t i = 0; i < patches_; ++i) {
         if (signals_.patch(i) + kCameraPatchValues > CameraSignals::kFirstLampPlace) return;
-        const auto values =
-            i < world.patches.size() ? values_of(world.patches[i]) : std::array<double, kCameraPatchValues>{};
+        const auto values = i < world.patches.size() ? values_of(world.patches[i], images_)
+                                                     : std::array<double, kCameraPatchValues>{};
         for (std::size_t k = 0; k < kCameraPatchValues; ++k)
             put(signals_.patch(i) + k, values[k]);
     }

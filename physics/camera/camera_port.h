@@ -30,6 +30,7 @@ class CameraPort {
     void put_changes(const WorldModel& model);
 
     CameraSignals signals_;
+    std::vector<FloorImage> images_;
     std::vector<cosim::PortIndex> ports_;
     std::vector<std::map<std::uint16_t, std::size_t>> ring_, turret_;  // by robot: signal id to ours
     std::map<std::size_t, double> leds_;

@@ -3,6 +3,7 @@
 #include "physics/description/booth.h"
 #include "physics/description/robot_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -47,7 +48,8 @@ auto& grown(List& list, std::size_t index) {
     return list[index];
 }
 
-FloorPatch patch_from(const std::array<double, kCameraPatchValues>& v) {
+FloorPatch patch_from(const std::array<double, kCameraPatchValues>& v,
+                      const std::vector<FloorImage>& images) {
     FloorPatch patch;
     patch.disc = v[0] != 0.0;
     patch.x = v[1];
@@ -58,15 +60,29 @@ FloorPatch patch_from(const std::array<double, kCameraPatchValues>& v) {
     patch.half_width = patch.disc ? v[4] : v[5] / 2;
     patch.reach = patch.disc ? v[4] : std::hypot(patch.half_length, patch.half_width);
     patch.grey = v[6];
+    if (const auto image = static_cast<std::size_t>(-1.0 - std::min(v[6], -1.0));
+        v[6] < 0.0 && image < images.size())
+        patch.image = images[image];
     return patch;
 }
 
 }  // namespace
 
-std::array<double, kCameraPatchValues> values_of(const Patch& patch) {
+std::vector<FloorImage> floor_images(const World& world) {
+    std::vector<FloorImage> images;
+    for (const Patch& patch : world.patches)
+        if (!patch.image.empty()) images.push_back(patch.image);
+    return images;
+}
+
+std::array<double, kCameraPatchValues> values_of(const Patch& patch, const std::vector<FloorImage>& images) {
     const bool disc = patch.shape == Patch::Shape::Disc;
-    return {disc ? 1.0 : 0.0, patch.x,    patch.y, patch.heading, disc ? patch.radius : patch.length,
-            patch.width,      patch.grey, 1.0};
+    double colour = patch.grey;
+    if (!patch.image.empty())
+        colour =
+            -1.0 - static_cast<double>(std::find(images.begin(), images.end(), patch.image) - images.begin());
+    return {disc ? 1.0 : 0.0, patch.x, patch.y, patch.heading, disc ? patch.radius : patch.length,
+            patch.width,      colour,  1.0};
 }
 
 CameraScene::CameraScene(const World& world)
@@ -74,7 +90,8 @@ CameraScene::CameraScene(const World& world)
       ambient_(world.ambient_light),
       floor_grey_(world.arena.floor_grey),
       ring_(world.robots.size()),
-      turret_(world.robots.size()) {
+      turret_(world.robots.size()),
+      images_(floor_images(world)) {
     for (const Robot& robot : world.robots) {
         robots_.push_back(parameters_of(world, robot));
         const BodyParameters& body = robots_.back().robot;
@@ -94,8 +111,8 @@ CameraScene::CameraScene(const World& world)
     for (const Shape& shape : fixed_shapes(world))
         fixed_.push_back(values_of(shape));
     for (const Patch& patch : world.patches) {
-        patches_.push_back(values_of(patch));
-        seen_patches_.push_back(patch_from(patches_.back()));
+        patches_.push_back(values_of(patch, images_));
+        seen_patches_.push_back(patch_from(patches_.back(), images_));
     }
     for (const Booth& booth : world.booths) {
         const BoothModel model(booth);  // which must outlive the loop over its lights
@@ -112,7 +129,7 @@ void CameraScene::change_patch(std::size_t index, std::size_t part, double value
     grown(patches_, index)[part] = value;
     seen_patches_.clear();
     for (const auto& values : patches_)
-        if (values[kCameraPatchValues - 1] != 0.0) seen_patches_.push_back(patch_from(values));
+        if (values[kCameraPatchValues - 1] != 0.0) seen_patches_.push_back(patch_from(values, images_));
 }
 
 void CameraScene::move_lamp(std::size_t index, std::size_t part, double value) {

@@ -31,6 +31,7 @@ struct FloorPatch {
     double half_length = 0.0, half_width = 0.0;  ///< or radius
     double reach = 0.0;                          ///< of a circle around it
     double grey = 0.0;
+    FloorImage image{};  ///< in place of that; empty: none
 };
 
 class CameraScene {
@@ -74,11 +75,14 @@ class CameraScene {
     std::vector<FloorPatch> seen_patches_;
     std::vector<std::array<double, kRingLeds>> ring_;
     std::vector<std::array<double, kTurretColours>> turret_;
+    std::vector<FloorImage> images_;
     std::vector<Glow> lamps_;
     std::vector<Glow> booth_lights_;  // levels: share of full duty
 };
 
+/// The images on the floor of a world as described; a patch is signalled with its image's number there.
+std::vector<FloorImage> floor_images(const World& world);
 /// A patch as signals.
-std::array<double, kCameraPatchValues> values_of(const Patch& patch);
+std::array<double, kCameraPatchValues> values_of(const Patch& patch, const std::vector<FloorImage>& images);
 
 }  // namespace puckloop::physics

@@ -17,7 +17,7 @@ inline constexpr cosim::Time kCameraRate = 30;  ///< Hz
 inline constexpr std::size_t kRingLeds = 10;      ///< led0..7, led_front, led_body
 inline constexpr std::size_t kTurretColours = 9;  ///< rgb0_red .. rgb2_blue
 inline constexpr std::size_t kCameraPatchValues =
-    8;  ///< disc, x, y, heading, length or radius, width, grey, there
+    8;  ///< disc, x, y, heading, length or radius, width, grey (or -1 - number of an image), there
 
 /// Ids of the port's signals.
 class CameraSignals {

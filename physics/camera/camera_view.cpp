@@ -77,6 +77,9 @@ void CameraView::meet_bodies(const Mode& mode) {
 }
 
 CameraView::Colour CameraView::floor_at(double x, double y) const {
+    const auto seen = [](double share) {
+        return static_cast<float>(kBlackFloor + (kWhiteFloor - kBlackFloor) * share);
+    };
     double grey = scene_.floor_grey();
     const auto& patches = scene_.patches();
     for (auto patch = patches.rbegin(); patch != patches.rend(); ++patch) {
@@ -86,10 +89,16 @@ CameraView::Colour CameraView::floor_at(double x, double y) const {
             patch->disc || (std::abs(patch->cosine * dx + patch->sine * dy) <= patch->half_length &&
                             std::abs(-patch->sine * dx + patch->cosine * dy) <= patch->half_width);
         if (!within) continue;
+        if (!patch->image.empty()) {
+            const Rgb& colour =
+                patch->image.at(0.5 + (patch->cosine * dx + patch->sine * dy) / (2 * patch->half_length),
+                                0.5 + (-patch->sine * dx + patch->cosine * dy) / (2 * patch->half_width));
+            return {seen(colour[0] / 255.0), seen(colour[1] / 255.0), seen(colour[2] / 255.0)};
+        }
         grey = patch->grey;
         break;
     }
-    const auto share = static_cast<float>(kBlackFloor + (kWhiteFloor - kBlackFloor) * grey);
+    const float share = seen(grey);
     return {share, share, share};
 }
 

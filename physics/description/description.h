@@ -3,6 +3,8 @@
 // processes as JSON text. Metres, radians, kilograms; x forward (east), y left (north), heading from +x
 // counter-clockwise; the floor is z = 0.
 
+#include "physics/description/floor_image.h"
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -94,6 +96,7 @@ struct Patch {
     double length = 0.1, width = 0.1;  ///< rectangle
     double radius = 0.05;              ///< disc
     double grey = 0.0;
+    FloorImage image{};  ///< of a rectangle, in place of its grey; empty: none
     Place place{};
 };
 

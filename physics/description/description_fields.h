@@ -17,7 +17,14 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cylinder, name, x, y, radius, height, movable
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Lamp, name, x, y, height, intensity, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speaker, name, x, y, height, level, on, off, every, times, wave, tone,
                                    sweep_to, place)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Patch, name, shape, x, y, heading, length, width, radius, grey, place)
+inline void to_json(nlohmann::json& json, const FloorImage& image) {
+    json = image.text();
+}
+inline void from_json(const nlohmann::json& json, FloorImage& image) {
+    image = FloorImage::from_text(json.get<std::string>());
+}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Patch, name, shape, x, y, heading, length, width, radius, grey, image,
+                                   place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Booth, name, x, y, heading, reflectivity, signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board_signals, ground_signals, rab,
                                    camera, rab_signals, place)

@@ -245,7 +245,8 @@ std::string Scene::set(const Action& action, Found what) {
     double* value = nullptr;
     if (what.kind == Kind::Lamp && property == "intensity") value = &world.lamps[what.index].intensity;
     if (what.kind == Kind::Speaker && property == "level") value = &world.speakers[what.index].level;
-    if (what.kind == Kind::Patch && property == "grey") value = &world.patches[what.index].grey;
+    if (what.kind == Kind::Patch && property == "grey" && world.patches[what.index].image.empty())
+        value = &world.patches[what.index].grey;
     if (property == "reflectivity") {
         if (what.kind == Kind::Fixed) value = &model_.fixed_[what.index].reflectivity;
         if (what.kind == Kind::Object)

@@ -38,6 +38,38 @@ double round_up(double least) {
     return 10 * power;
 }
 
+namespace {
+
+/// As rectangles of one colour, in at most kCells rows and columns.
+void draw_image(const Patch& patch, SvgCanvas& canvas) {
+    constexpr std::size_t kCells = 120;
+    const std::size_t columns = std::min(patch.image.width(), kCells);
+    const std::size_t rows = std::min(patch.image.height(), kCells);
+    const double length = patch.length / static_cast<double>(columns);
+    const double width = patch.width / static_cast<double>(rows);
+    const double cosine = std::cos(patch.heading), sine = std::sin(patch.heading);
+    constexpr double kSeam = 1.02;  // so that nothing shows between neighbours
+    for (std::size_t row = 0; row < rows; ++row) {
+        const auto colour = [&](std::size_t column) {
+            return patch.image.at((static_cast<double>(column) + 0.5) / static_cast<double>(columns),
+                                  (static_cast<double>(row) + 0.5) / static_cast<double>(rows));
+        };
+        for (std::size_t from = 0, to = 0; from < columns; from = to) {
+            const Rgb now = colour(from);
+            for (to = from + 1; to < columns && colour(to) == now;)
+                ++to;
+            const double along = length * static_cast<double>(from + to) / 2 - patch.length / 2;
+            const double up = width * (static_cast<double>(row) + 0.5) - patch.width / 2;
+            canvas.shape(box_shape(patch.x + cosine * along - sine * up, patch.y + sine * along + cosine * up,
+                                   patch.heading, length * static_cast<double>(to - from) * kSeam,
+                                   width * kSeam, 0, 0),
+                         fmt::format("fill=\"#{:02x}{:02x}{:02x}\"", now[0], now[1], now[2]));
+        }
+    }
+}
+
+}  // namespace
+
 Picture::Picture(const World& world, const Paths& robots, const Paths& objects,
                  const std::vector<BoothColours>& booths)
     : world_(world), robots_(robots), objects_(objects), booths_(booths), canvas_(frame(world)) {}
@@ -50,9 +82,13 @@ void Picture::floor() {
                                                       grey(world_.arena.floor_grey)));
     canvas_.raw("<g clip-path=\"url(#arena)\">\n");
     for (const auto& p : world_.patches)
-        canvas_.shape(p.shape == Patch::Shape::Disc ? circle_shape(p.x, p.y, p.radius, 0, 0)
-                                                    : box_shape(p.x, p.y, p.heading, p.length, p.width, 0, 0),
-                      fmt::format("fill=\"{}\"", grey(p.grey)));
+        if (!p.image.empty())
+            draw_image(p, canvas_);
+        else
+            canvas_.shape(p.shape == Patch::Shape::Disc
+                              ? circle_shape(p.x, p.y, p.radius, 0, 0)
+                              : box_shape(p.x, p.y, p.heading, p.length, p.width, 0, 0),
+                          fmt::format("fill=\"{}\"", grey(p.grey)));
     canvas_.raw("</g>\n");
 }
 

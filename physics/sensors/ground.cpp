@@ -47,6 +47,14 @@ bool GroundRow::Cover::at(double x, double y) const {
            std::abs(cosine * dy - sine * dx) <= patch.width / 2;
 }
 
+double GroundRow::Cover::grey(double x, double y) const {
+    if (patch.image.empty()) return patch.grey;
+    const double dx = x - patch.x;
+    const double dy = y - patch.y;
+    return grey_of(patch.image.at(0.5 + (cosine * dx + sine * dy) / patch.length,
+                                  0.5 + (cosine * dy - sine * dx) / patch.width));
+}
+
 /// May any spot of a robot there lie on a patch?
 bool GroundRow::near_a_patch(double x, double y) const {
     constexpr double kRounding = 1e-6;
@@ -60,7 +68,7 @@ bool GroundRow::near_a_patch(double x, double y) const {
 /// 0 black .. 1 white; later patches lie on top.
 double GroundRow::grey_at(double x, double y) const {
     for (auto i = covers_.size(); i-- > 0;)
-        if (covers_[i].at(x, y)) return covers_[i].patch.grey;
+        if (covers_[i].at(x, y)) return covers_[i].grey(x, y);
     return base_grey_;
 }
 

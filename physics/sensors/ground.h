@@ -1,7 +1,8 @@
 #pragma once
 // The three ground sensors: floor grey to 10-bit counts. Sources: physics facts section 3, e-puck facts 5.2.
 //
-// Deviations: 1. the footprint is averaged over five points. 2. Outside the arena the floor goes on.
+// Deviations: 1. the footprint is averaged over five points. 2. Outside the arena the floor goes on. 3.
+// Infra-red sees a coloured floor as grey of the same luminance.
 
 #include "physics/description/parameters.h"
 #include "physics/sensors/sensor_view.h"
@@ -38,6 +39,7 @@ class GroundRow {
         double cosine = 1.0, sine = 0.0;
         double radius = 0.0;  // of a circle around it
         bool at(double x, double y) const;
+        double grey(double x, double y) const;
     };
     bool near_a_patch(double x, double y) const;
     double grey_at(double x, double y) const;

@@ -65,7 +65,11 @@ void WorldLog::elements(const World& world) {
         write(fmt::format("lamp {} at {}, height {:.4g} m, intensity {:.4g}", lamp.name, at(lamp.x, lamp.y),
                           lamp.height, lamp.intensity));
     for (const Patch& patch : world.patches)
-        write(fmt::format("floor patch {} at {}, grey {:.4g}", patch.name, at(patch.x, patch.y), patch.grey));
+        write(fmt::format("floor patch {} at {}, {}", patch.name, at(patch.x, patch.y),
+                          patch.image.empty()
+                              ? fmt::format("grey {:.4g}", patch.grey)
+                              : fmt::format("{:.4g} x {:.4g} m, image of {} x {} pixels", patch.length,
+                                            patch.width, patch.image.width(), patch.image.height())));
     for (const Booth& booth : world.booths)
         write(fmt::format("tam {} at {}, opening towards {:.2f} deg", booth.name, at(booth.x, booth.y),
                           degrees(booth.heading)));

@@ -15,7 +15,8 @@ constexpr auto kRunOptions = std::to_array<std::string_view>(
      "--log-level",  "--log-file", "--verbose",      "--save-state", "--at",
      "--from-state", "--no-cache", "--no-translate", "--fault",      "--trace-format",
      "--record",     "--live",     "--gdb",          "--save-at",    "--save",
-     "--from",       "--stats"});
+     "--from",       "--stats",    "--set",          "--floor",      "--floor-scale",
+     "--linux-start"});
 
 bool is_run_option(std::string_view word) {
     return std::any_of(kRunOptions.begin(), kRunOptions.end(), [&](std::string_view option) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,7 +61,32 @@ void replace_firmware(Scenario& scenario, const std::string& assignment) {
                          "one of " + known + "or pic, rab or tam for all");
 }
 
+/// The command line's program, and after it the arguments that the scenario has for one; where its first of
+/// these (-c) is among those given, they stand alone.
+std::vector<std::string> command_with(const std::vector<std::string>& given,
+                                      const std::vector<std::string>& arguments) {
+    std::vector<std::string> command = given;
+    command[0] = find_program(given[0], ".").string();
+    if (!arguments.empty() && std::find(given.begin() + 1, given.end(), arguments[0]) == given.end())
+        command.insert(command.end(), arguments.begin(), arguments.end());
+    return command;
+}
+
+/// A Linux board that waits for a program and gets none is not there.
+void leave_out_idle_boards(Scenario& scenario) {
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+        RobotBoards& robot = scenario.robots[i];
+        if (!robot.linux_board || !robot.linux_board->command.empty()) continue;
+        robot.linux_board.reset();
+        scenario.world.robots[i].camera = !robot.pic.camera.empty();
+    }
+}
+
 }  // namespace
+
+scenarios::Settings settings_of(const RunRequest& request) {
+    return {request.variables, request.seed, request.floor, request.floor_scale};
+}
 
 void apply(const RunRequest& request, Scenario& scenario) {
     for (const std::string& assignment : request.firmware)
@@ -68,10 +94,13 @@ void apply(const RunRequest& request, Scenario& scenario) {
     if (!request.linux_command.empty()) {
         for (RobotBoards& robot : scenario.robots) {
             if (!robot.linux_board) robot.linux_board.emplace().hostname = robot.name;
-            robot.linux_board->command = request.linux_command;
-            robot.linux_board->command[0] = find_program(request.linux_command[0], ".").string();
+            robot.linux_board->command = command_with(request.linux_command, robot.linux_board->arguments);
         }
     }
+    leave_out_idle_boards(scenario);
+    if (request.linux_start)
+        for (RobotBoards& robot : scenario.robots)
+            if (robot.linux_board) robot.linux_board->start = *request.linux_start;
     if (request.duration) scenario.duration = request.duration;
     if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
     if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);

@@ -6,6 +6,9 @@
 
 namespace puckloop::tools {
 
+/// What the command line decides before the scenario is read.
+scenarios::Settings settings_of(const RunRequest& request);
+
 /// Firmware, Linux program, duration, seed, overlay, faults. Throws InputError for a board that is not there,
 /// a file that cannot be read.
 void apply(const RunRequest& request, scenarios::Scenario& scenario);

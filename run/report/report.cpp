@@ -170,6 +170,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
                         {"events", events_of(nodes)},
                         {"warnings", warnings_of(setup, outcome)},
                         {"unmodelled_registers", unmodelled_of(nodes)}};
+    if (!setup.scenario.not_taken.empty()) report["not_taken_over"] = setup.scenario.not_taken;
     if (!setup.from.empty())
         report["from"] = {{"file", setup.from.string()},
                           {"at_s", cosim::to_seconds(setup.from_time)},

@@ -135,14 +135,13 @@ json request_json(const RunRequest& request) {
                            fs::absolute(assignment.substr(equals + 1)).string());
     }
     const auto path = [](const fs::path& file) { return file.empty() ? "" : fs::absolute(file).string(); };
-    json text{{"scenario", path(request.scenario)},
-              {"firmware", firmware},
-              {"program", request.linux_command},
-              {"overlay", path(request.overlay)},
-              {"events", path(request.events)},
-              {"faults", request.faults},
-              {"out", path(request.out)}};
+    json text{{"scenario", path(request.scenario)}, {"firmware", firmware},
+              {"variables", request.variables},     {"floor", path(request.floor)},
+              {"floor_scale", request.floor_scale}, {"program", request.linux_command},
+              {"overlay", path(request.overlay)},   {"events", path(request.events)},
+              {"faults", request.faults},           {"out", path(request.out)}};
     if (request.duration) text["duration"] = *request.duration;
+    if (request.linux_start) text["linux_start"] = *request.linux_start;
     if (request.seed) text["seed"] = *request.seed;
     return text;
 }
@@ -160,6 +159,9 @@ RunRequest request_from(const std::string& origin, const RunRequest& request, co
         RunRequest all = request;
         all.scenario = then.at("scenario").get<std::string>();
         all.firmware = then.at("firmware").get<std::vector<std::string>>();
+        all.variables = then.at("variables").get<std::vector<std::string>>();
+        all.floor = then.at("floor").get<std::string>();
+        all.floor_scale = then.at("floor_scale").get<double>();
         all.linux_command = then.at("program").get<std::vector<std::string>>();
         all.overlay = then.at("overlay").get<std::string>();
         all.events = then.at("events").get<std::string>();
@@ -167,6 +169,7 @@ RunRequest request_from(const std::string& origin, const RunRequest& request, co
         all.faults.insert(all.faults.end(), request.faults.begin(), request.faults.end());
         if (all.out.empty()) all.out = then.at("out").get<std::string>();
         if (!all.duration && then.contains("duration")) all.duration = then["duration"].get<double>();
+        if (then.contains("linux_start")) all.linux_start = then["linux_start"].get<double>();
         if (then.contains("seed")) all.seed = then["seed"].get<std::uint64_t>();
         return all;
     } catch (const json::exception& error) {

@@ -19,15 +19,4 @@ std::vector<std::string> read_allowed(Reader& run) {
     return allowed;
 }
 
-std::vector<std::string> allowed_failures(const std::filesystem::path& file) {
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(file, none)) return {};
-    const TomlValue root = read_toml(file);
-    Reader top(file.string(), "", root);
-    const TomlValue* table = top.table("run");
-    if (table == nullptr) return {};
-    Reader run(file.string(), "run", *table);
-    return read_allowed(run);
-}
-
 }  // namespace puckloop::scenarios

@@ -4,7 +4,6 @@
 
 #include "scenarios/reader/reader.h"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,8 +11,5 @@ namespace puckloop::scenarios {
 
 /// Of "program", "silent_line" and "hung". Throws InputError for another one.
 std::vector<std::string> read_allowed(Reader& run);
-
-/// Those of a scenario's file; none where it is not there. Throws InputError.
-std::vector<std::string> allowed_failures(const std::filesystem::path& file);
 
 }  // namespace puckloop::scenarios

@@ -8,10 +8,10 @@
 
 namespace puckloop::scenarios {
 
-/// "own": the project's own image, `own` by the name of its file. A path is relative to the scenario's
-/// `folder`; a bare name that is not there is looked for among the shipped images, so that a scenario copied
-/// elsewhere works. Throws InputError where the key is missing.
-std::filesystem::path read_firmware(Reader& reader, const std::filesystem::path& folder,
-                                    std::string_view own);
+/// The key `firmware` of a main board ("pic") or a range-and-bearing board ("rab"). The name of a shipped
+/// image of that board, "own" being the one for ordinary use, or a file: relative to the scenario's folder,
+/// and where it is not there, by its name among the shipped images, so that a scenario copied elsewhere
+/// works. Throws InputError where the key is missing and where a text without dot and slash is neither.
+std::filesystem::path read_firmware(Reader& reader, std::string_view board);
 
 }  // namespace puckloop::scenarios

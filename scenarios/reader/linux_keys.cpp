@@ -46,7 +46,8 @@ std::vector<LinuxSignal> read_signals(Reader& reader) {
 
 void read_program(Reader& reader, LinuxBoard& board) {
     board.command = reader.texts("program");
-    if (board.command.empty())
+    board.arguments = reader.texts("arguments");
+    if (board.command.empty() && board.arguments.empty())
         reader.fail("program", "'program' is missing", "program = [\"./controller\", \"-x\"]");
     board.hostname = reader.text("hostname", board.hostname);
     board.start = reader.quantity("start", Dimension::Time, 0.0);

@@ -16,18 +16,27 @@ std::string joined(const std::vector<std::string>& words) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// What does not come from a file has no lines.
-std::string place_of(int line) {
-    return line > 0 ? fmt::format("line {}", line) : std::string{};
-}
-
 }  // namespace
+
+std::string place_of(const TomlValue& value) {
+    if (value.line <= 0) return {};  // what does not come from a file has no lines
+    return value.source ? fmt::format("line {} of {}", value.line, *value.source)
+                        : fmt::format("line {}", value.line);
+}
 
 Reader::Reader(std::string file, std::string where, const TomlValue& table)
     : file_(std::move(file)), where_(std::move(where)), table_(table) {
     if (!table.is_table())
-        throw InputError(file_, fmt::format("line {}", table.line), fmt::format("{} is not a table", where_),
-                         fmt::format("[{}]", where_));
+        fail_at(table, fmt::format("{} is not a table", where_), fmt::format("[{}]", where_));
+}
+
+void Reader::fail_at(const TomlValue& value, const std::string& problem, std::string_view expected) const {
+    const std::string place = value.line > 0 ? fmt::format("line {}", value.line) : std::string{};
+    throw InputError(value.source ? *value.source : file_, place, problem, expected);
+}
+
+std::filesystem::path Reader::folder() const {
+    return std::filesystem::path(table_.source ? *table_.source : file_).parent_path();
 }
 
 const TomlValue* Reader::find(std::string_view key) {
@@ -47,16 +56,15 @@ void Reader::fail_missing(std::string_view key, std::string_view expected) {
     // A key that is near to it and that nobody asked for is the same one, misspelt.
     for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
         if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
-        if (!nearest_name(name, {key}).empty()) fail_unknown(name, value.line, std::string(key));
+        if (!nearest_name(name, {key}).empty()) fail_unknown(name, value, std::string(key));
     }
     fail(key, fmt::format("'{}' is missing", key), expected);
 }
 
-void Reader::fail_unknown(std::string_view name, int line, const std::string& meant) const {
+void Reader::fail_unknown(std::string_view name, const TomlValue& value, const std::string& meant) const {
     const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
-    throw InputError(file_, place_of(line), fmt::format("{}unknown key '{}'", prefix, name),
-                     meant.empty() ? fmt::format("one of {}", joined(asked_))
-                                   : fmt::format("perhaps '{}'", meant));
+    fail_at(value, fmt::format("{}unknown key '{}'", prefix, name),
+            meant.empty() ? fmt::format("one of {}", joined(asked_)) : fmt::format("perhaps '{}'", meant));
 }
 
 bool Reader::has(std::string_view key) {
@@ -75,7 +83,8 @@ int Reader::line_of(std::string_view key) {
 
 void Reader::fail(std::string_view key, std::string_view problem, std::string_view expected) {
     const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
-    throw InputError(file_, place_of(line_of(key)), prefix + std::string(problem), expected);
+    const TomlValue* value = find(key);
+    fail_at(value ? *value : table_, prefix + std::string(problem), expected);
 }
 
 double Reader::number(std::string_view key, const TomlValue& value, Dimension dimension) {
@@ -224,7 +233,7 @@ const TomlTable& Reader::everything() {
 void Reader::finish() const {
     for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
         if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
-        fail_unknown(name, value.line, nearest_name(name, {asked_.begin(), asked_.end()}));
+        fail_unknown(name, value, nearest_name(name, {asked_.begin(), asked_.end()}));
     }
 }
 

@@ -6,12 +6,16 @@
 #include "scenarios/reader/quantity.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace puckloop::scenarios {
+
+/// "line 7", or "line 7 of arena.toml" where a table is from an included file; empty where it is from none.
+std::string place_of(const TomlValue& value);
 
 class Reader {
   public:
@@ -56,11 +60,16 @@ class Reader {
     /// The same where the key is absent; one that is near to it is named.
     [[noreturn]] void fail_missing(std::string_view key, std::string_view expected = {});
     const std::string& file() const { return file_; }
+    /// Of the file that the table is in: what paths in it are relative to.
+    std::filesystem::path folder() const;
 
   private:
     const TomlValue* find(std::string_view key);
     const TomlValue& require(std::string_view key);
-    [[noreturn]] void fail_unknown(std::string_view name, int line, const std::string& meant) const;
+    [[noreturn]] void fail_unknown(std::string_view name, const TomlValue& value,
+                                   const std::string& meant) const;
+    [[noreturn]] void fail_at(const TomlValue& value, const std::string& problem,
+                              std::string_view expected) const;
     double number(std::string_view key, const TomlValue& value, Dimension dimension);
     std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension,
                                 std::size_t count);

@@ -20,12 +20,11 @@ namespace puckloop::scenarios {
 namespace {
 
 /// The file that keeps a board's memory: nobody else's.
-std::filesystem::path read_nvm(Reader& reader, const std::filesystem::path& folder,
-                               const std::vector<std::filesystem::path>& others) {
+std::filesystem::path read_nvm(Reader& reader, const std::vector<std::filesystem::path>& others) {
     const std::string name = reader.text("nvm", "");
     if (name.empty()) return {};
     std::error_code ignored;
-    const std::filesystem::path file = folder / name;
+    const std::filesystem::path file = reader.folder() / name;
     for (const std::filesystem::path& other : others)
         if (std::filesystem::weakly_canonical(other, ignored) ==
             std::filesystem::weakly_canonical(file, ignored))
@@ -52,11 +51,10 @@ std::vector<std::string> read_errata(Reader& reader) {
 }
 
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
-                  const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others,
-                  std::size_t index) {
+                  const std::vector<std::filesystem::path>& others, std::size_t index) {
     Reader reader(file, where, table);
     PicBoard pic;
-    pic.firmware = read_firmware(reader, folder, "epuck.hex");
+    pic.firmware = read_firmware(reader, "pic");
     pic.crystal_ppm = read_clock_error(reader, "crystal_error");
     pic.adc_noise_given = reader.has("adc_noise");
     pic.adc_noise = read_adc_noise(reader, pic.adc_noise);
@@ -69,7 +67,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
         pic.bluetooth = read_bluetooth_module(file, where + ".bluetooth", *bluetooth, index);
     }
     pic.resets = read_times(reader, "reset", 0.0);
-    pic.nvm = read_nvm(reader, folder, others);
+    pic.nvm = read_nvm(reader, others);
     constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
     if (const double boot = reader.quantity("boot", Dimension::Time, kNotGiven); !std::isnan(boot)) {
         constexpr double kLongest = 86'400.0 * 30;  // s, as a run
@@ -86,13 +84,13 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
 }
 
 RabBoard read_rab(const std::string& file, const std::string& where, const TomlValue& table,
-                  const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others) {
+                  const std::vector<std::filesystem::path>& others) {
     Reader reader(file, where, table);
     RabBoard rab;
-    rab.firmware = read_firmware(reader, folder, "rab.hex");
+    rab.firmware = read_firmware(reader, "rab");
     rab.crystal_ppm = read_clock_error(reader, "crystal_error");
     rab.adc_noise = read_adc_noise(reader, rab.adc_noise);
-    rab.nvm = read_nvm(reader, folder, others);
+    rab.nvm = read_nvm(reader, others);
     reader.finish();
     return rab;
 }
@@ -111,8 +109,7 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
 
 }  // namespace
 
-void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
-                Scenario& scenario) {
+void read_robot(const std::string& file, const TomlValue& table, Scenario& scenario) {
     const std::string fallback = fmt::format("robot{}", scenario.robots.size());
     Reader reader(file, fallback, table);
     RobotBoards boards;
@@ -122,7 +119,7 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
     body.x = position[0];
     body.y = position[1];
     body.heading = reader.quantity("heading", Dimension::Angle, 0.0);
-    body.place = fmt::format("line {}", table.line);
+    body.place = place_of(table);
     if (const TomlValue* parameters = reader.table("parameters"))
         body.parameters = read_parameters(file, boards.name, *parameters);
     std::vector<std::filesystem::path> memories;
@@ -132,10 +129,10 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
     }
     const TomlValue* pic = reader.table("pic");
     if (!pic) reader.fail("pic", "[robot.pic] is missing", "[robot.pic] with firmware = \"image.hex\"");
-    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder, memories, scenario.robots.size());
+    boards.pic = read_pic(file, boards.name + ".pic", *pic, memories, scenario.robots.size());
     if (!boards.pic.nvm.empty()) memories.push_back(boards.pic.nvm);
     if (const TomlValue* rab = reader.table("rab"))
-        boards.rab = read_rab(file, boards.name + ".rab", *rab, folder, memories);
+        boards.rab = read_rab(file, boards.name + ".rab", *rab, memories);
     if (const TomlValue* linux_table = reader.table("linux"))
         boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
     if (boards.linux_board && !boards.pic.uart2.empty())

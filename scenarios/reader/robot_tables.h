@@ -5,13 +5,11 @@
 #include "scenarios/reader/reader.h"
 #include "scenarios/reader/scenario.h"
 
-#include <filesystem>
 #include <string>
 
 namespace puckloop::scenarios {
 
 /// Reads one robot and adds it, boards and body. Throws InputError with file and line.
-void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
-                Scenario& scenario);
+void read_robot(const std::string& file, const TomlValue& table, Scenario& scenario);
 
 }  // namespace puckloop::scenarios

@@ -3,9 +3,13 @@
 #include "base/error.h"
 #include "cosim/faults/kinds/kind_facts.h"
 #include "physics/description/parameters.h"
+#include "scenarios/argos/import.h"
 #include "scenarios/reader/allowed_failures.h"
 #include "scenarios/reader/bluetooth_tables.h"
 #include "scenarios/reader/can_tables.h"
+#include "scenarios/reader/compose/groups.h"
+#include "scenarios/reader/compose/include.h"
+#include "scenarios/reader/compose/variables.h"
 #include "scenarios/reader/events/event_tables.h"
 #include "scenarios/reader/faults/fault_tables.h"
 #include "scenarios/reader/radio_tables.h"
@@ -24,13 +28,31 @@ namespace {
 
 constexpr double kLongestRun = 86'400.0 * 30;  // s; simulated time itself reaches 106 days
 
+TomlValue read_tables(const std::filesystem::path& file, const Settings& settings, Scenario& scenario) {
+    TomlValue root;
+    if (argos::is_experiment(file)) {
+        scenario.files.push_back(file);
+        argos::Imported imported = argos::import_experiment(file, {settings.floor, settings.floor_scale});
+        for (const argos::Note& note : imported.notes)
+            scenario.not_taken.push_back(fmt::format("line {}: {}", note.line, note.text));
+        root = std::move(imported.scenario);
+    } else {
+        if (!settings.floor.empty())
+            throw InputError("", "--floor", "is for ARGoS experiments",
+                             "a [[floor_patch]] with image in the scenario");
+        root = read_with_includes(file, scenario.files);
+    }
+    resolve_variables(root, file.string(), settings.variables);
+    return root;
+}
+
 }  // namespace
 
-Scenario read_scenario(const std::filesystem::path& file) {
-    const TomlValue root = read_toml(file);
-    const std::string name = file.string();
-    Reader top(name, "", root);
+Scenario read_scenario(const std::filesystem::path& file, const Settings& settings) {
     Scenario scenario;
+    const std::string name = file.string();
+    TomlValue root = read_tables(file, settings, scenario);
+    Reader top(name, "", root);
     scenario.file = file;
     scenario.name = file.stem().string();
     if (const TomlValue* table = top.table("run")) {
@@ -51,17 +73,20 @@ Scenario read_scenario(const std::filesystem::path& file) {
         if (scenario.i2c_clock < 1e3 || scenario.i2c_clock > 1e6)
             run.fail("i2c_clock", "i2c_clock is out of range", "1 kHz to 1 MHz");
         scenario.record_ir = run.flag("record_ir", false);
-        read_allowed(run);
+        scenario.allow = read_allowed(run);
         run.finish();
     }
+    if (settings.seed) scenario.seed = *settings.seed;
     const double period = scenario.world.recording.period;
     scenario.world = read_world(top);
     scenario.world.recording.period = period;
     scenario.world.seed = scenario.seed;
     for (const TomlValue* table : top.tables("robot"))
-        read_robot(name, *table, file.parent_path(), scenario);
+        read_robot(name, *table, scenario);
     for (const TomlValue* table : top.tables("tam"))
-        read_tam(name, *table, file.parent_path(), scenario);
+        read_tam(name, *table, scenario);
+    for (const TomlValue* table : top.tables("group"))
+        read_group(name, *table, scenario);
     scenario.radio = read_radio(top);
     scenario.coordinator = read_coordinator(top);
     read_bluetooth(top, scenario);
@@ -74,7 +99,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
         ircom.finish();
     }
     if (scenario.robots.empty() && scenario.tams.empty())
-        top.fail_missing("robot", "at least one [[robot]] or [[tam]]");
+        top.fail_missing("robot", "at least one [[robot]], [[group]] or [[tam]]");
     std::size_t index = 0;
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));

@@ -85,10 +85,12 @@ struct LinuxCamera {
 
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
-    std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
-    std::string hostname;              ///< what gethostname() gives
-    double start = 0.0;                ///< s: when the program is started
-    std::vector<double> restarts;      ///< s: killed and started again
+    /// Program and arguments; the program's path is resolved. Empty: it waits for one of the command line.
+    std::vector<std::string> command;
+    std::vector<std::string> arguments{};  ///< of a program that the command line gives
+    std::string hostname;                  ///< what gethostname() gives
+    double start = 0.0;                    ///< s: when the program is started
+    std::vector<double> restarts;          ///< s: killed and started again
     std::vector<LinuxSignal> signals;
     std::string folder;               ///< to work in, below the results; empty: puckloop's own
     std::string end_signal = "TERM";  ///< when the run is to end
@@ -184,12 +186,24 @@ struct Scenario {
     std::optional<CoordinatorPlace> coordinator{};
     std::vector<CanBus> can_buses{};
     std::vector<cosim::FaultSpec> faults;
+    std::vector<std::string> allow{};      ///< failures that do not fail the run (allowed_failures.h)
+    std::vector<std::string> not_taken{};  ///< of an ARGoS experiment: "line 7: ...", what is otherwise here
+    std::vector<std::filesystem::path> files{};  ///< that it was read from, its own first
     std::vector<std::string> ignored{};  ///< an overlay's [measurement]: of the measuring chain, not of a run
 };
 
-/// Reads and checks a scenario; paths in it are relative to its own folder. Throws InputError with file and
-/// line.
-Scenario read_scenario(const std::filesystem::path& file);
+/// What is decided before a scenario is read: values of its variables, and the seed by which places and
+/// spreads of groups are drawn.
+struct Settings {
+    std::vector<std::string> variables{};  ///< "NAME=VALUE"
+    std::optional<std::uint64_t> seed{};   ///< in place of the scenario's
+    std::filesystem::path floor{};         ///< PNG file for the floor of an ARGoS experiment; empty: none
+    double floor_scale = 0.0;              ///< of that, pixels a metre; 0: it covers the arena
+};
+
+/// Reads and checks a scenario, TOML or, by its ending .argos or .xml, an ARGoS experiment; paths in it are
+/// relative to the folder of the file that they are in. Throws InputError with file and line.
+Scenario read_scenario(const std::filesystem::path& file, const Settings& settings = {});
 
 /// Any robot has a Bluetooth module.
 inline bool has_bluetooth(const Scenario& scenario) {

@@ -14,11 +14,11 @@ constexpr std::string_view kOwn = "own";
 constexpr double kHighestBattery = 5.0;  // V
 constexpr double kSlowest = 300.0, kFastest = 115'200.0;
 
-void read_board(Reader& reader, const std::filesystem::path& folder, TamBoard& tam) {
+void read_board(Reader& reader, TamBoard& tam) {
     if (const std::string image = reader.text("firmware", std::string(kOwn)); image != kOwn)
-        tam.firmware = folder / image;
+        tam.firmware = reader.folder() / image;
     if (const std::string image = reader.text("boot_loader", ""); !image.empty())
-        tam.boot_loader = folder / image;
+        tam.boot_loader = reader.folder() / image;
     std::error_code ignored;  // what is not there is said when it is loaded
     if (!tam.boot_loader.empty() && std::filesystem::weakly_canonical(tam.boot_loader, ignored) ==
                                         std::filesystem::weakly_canonical(tam.firmware, ignored))
@@ -43,8 +43,7 @@ void read_board(Reader& reader, const std::filesystem::path& folder, TamBoard& t
 
 }  // namespace
 
-void read_tam(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
-              Scenario& scenario) {
+void read_tam(const std::string& file, const TomlValue& table, Scenario& scenario) {
     const std::string fallback = fmt::format("tam{}", scenario.tams.size());
     Reader reader(file, fallback, table);
     TamBoard tam;
@@ -55,8 +54,8 @@ void read_tam(const std::string& file, const TomlValue& table, const std::filesy
     booth.y = position[1];
     booth.heading = reader.quantity("heading", Dimension::Angle, 0.0);
     booth.reflectivity = reader.quantity("reflectivity", Dimension::Ratio, booth.reflectivity);
-    booth.place = fmt::format("line {}", table.line);
-    read_board(reader, folder, tam);
+    booth.place = place_of(table);
+    read_board(reader, tam);
     tam.xbee = read_tam_module(file, tam.name, reader.table("xbee"), scenario.tams.size(), tam.network);
     reader.finish();
     scenario.tams.push_back(std::move(tam));

@@ -4,13 +4,11 @@
 #include "base/toml_file.h"
 #include "scenarios/reader/scenario.h"
 
-#include <filesystem>
 #include <string>
 
 namespace puckloop::scenarios {
 
 /// Reads one TAM and adds it, board and booth. Throws InputError with file and line.
-void read_tam(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
-              Scenario& scenario);
+void read_tam(const std::string& file, const TomlValue& table, Scenario& scenario);
 
 }  // namespace puckloop::scenarios

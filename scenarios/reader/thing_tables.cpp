@@ -1,5 +1,7 @@
 #include "scenarios/reader/thing_tables.h"
 
+#include "scenarios/reader/png_floor.h"
+
 #include <fmt/format.h>
 
 namespace puckloop::scenarios {
@@ -90,7 +92,23 @@ void read_speaker(Reader& reader, physics::Speaker& speaker) {
 void read_patch(Reader& reader, physics::Patch& patch) {
     read_centre(reader, patch.x, patch.y);
     patch.heading = reader.quantity("heading", Dimension::Angle, 0.0);
-    patch.grey = reader.quantity("grey", Dimension::Ratio);
+    const std::string image = reader.text("image", "");
+    patch.grey = image.empty() ? reader.quantity("grey", Dimension::Ratio) : 0.0;
+    if (!image.empty()) {
+        for (const char* other : {"grey", "shape", "radius"})
+            if (reader.has(other))
+                reader.fail(other, fmt::format("a patch with an image has no {}", other),
+                            "image, centre, size, heading, stretch");
+        const auto size = reader.quantities("size", Dimension::Length, 2);
+        patch.length = size[0];
+        patch.width = size[1];
+        patch.image = read_png(reader.folder() / image);
+        const bool stretch = reader.flag("stretch", false);
+        if (const std::string problem = misfit_of(patch.image, patch.length, patch.width);
+            !stretch && !problem.empty())
+            reader.fail("size", problem, "the image's proportions, or stretch = true");
+        return;
+    }
     if (reader.choice("shape", "rectangle", {"rectangle", "disc"}) == "disc") {
         patch.shape = physics::Patch::Shape::Disc;
         patch.radius = reader.quantity("radius", Dimension::Length);

@@ -11,10 +11,6 @@ namespace puckloop::scenarios {
 
 namespace {
 
-std::string place_of(const TomlValue& table) {
-    return fmt::format("line {}", table.line);
-}
-
 /// Calls read(reader, item, place) for each [[key]] table; names default to "key 1", "key 2".
 template <typename Item, typename Read>
 void read_each(Reader& top, std::string_view key, std::vector<Item>& list, Read read) {

@@ -62,6 +62,7 @@ const std::vector<std::string> kFolders = {
     "physics/ircom",
     "physics/node",
     "physics/render",
+    "scenarios/argos",
     "scenarios",
     "linuxboard/control",
     "linuxboard/coordinator",

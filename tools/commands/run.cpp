@@ -92,7 +92,7 @@ int list_parameters(const RunRequest& request) {
         print_parameters(nullptr);
         return 0;
     }
-    scenarios::Scenario scenario = scenarios::read_scenario(request.scenario);
+    scenarios::Scenario scenario = scenarios::read_scenario(request.scenario, settings_of(request));
     apply(request, scenario);
     print_parameters(&scenario.world);
     return 0;
@@ -122,6 +122,8 @@ int run(Options& options) {
     if (!request.from.empty()) request = going_on(request);
     RunSetup setup = set_up(request);
     if (options.control) let_client_drive(setup, request);
+    for (const std::string& note : setup.scenario.not_taken)
+        fmt::print(stderr, "{}: {}\n", request.scenario.string(), note);
     const cosim::InterruptGuard interrupt;
     if (setup.ready > 0)
         fmt::print(stderr, "the first {:g} s are not paced: the boards boot\n",
@@ -175,6 +177,22 @@ void declare_run(Command& app, int& status) {
                      "up to the next option of this list, and all the rest after a --")
         ->type_name("PROGRAM [ARG]...");
     command->add_option("--linux-arg", options->linux_args)->group("");
+    command
+        ->add_option(
+            "--linux-start", request.linux_start,
+            "simulated second at which every robot's Linux program is started (default: the scenario's)")
+        ->check(number_between(0.0, kLongestRun))
+        ->type_name("S");
+    command
+        ->add_option("--floor", request.floor,
+                     "PNG file for the floor of an ARGoS experiment (docs/swarm.md)")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command
+        ->add_option("--floor-scale", request.floor_scale,
+                     "pixels a metre of --floor (default: it covers the arena)")
+        ->check(positive_number())
+        ->type_name("N");
     command->add_flag("--in-process", request.in_process,
                       "all nodes in this process (default: each in its own)");
     command
@@ -206,6 +224,12 @@ void declare_run(Command& app, int& status) {
     command->add_option("--duration", request.duration, "simulated time of the run, such as 30 s")
         ->check(seconds_between(kShortestRun, kLongestRun))
         ->type_name("TIME");
+    command
+        ->add_option("--set", request.variables,
+                     "NAME=VALUE: a variable of the scenario's [variables]; may be given several times")
+        ->allow_extra_args(false)
+        ->check(not_empty())
+        ->type_name("NAME=VALUE");
     command->add_option("--seed", request.seed, "seed of every random stream")
         ->check(count_up_to(~std::uint64_t{0}))
         ->type_name("N");
