@@ -35,7 +35,7 @@ class LineReceiver {
 /// How a receiver of this sender is set; nothing for a frame that states nothing of it.
 std::optional<protocols::UartReceiver> setting_of(const cosim::TraceRow& row, const cosim::UartFrame& frame);
 
-/// A frame that was on the air; null for other rows, and for what a module tells its medium of its settings
+/// A frame that was on the air; null for other rows, and for what a module gives its medium of its settings
 /// (a frame without a duration).
 const cosim::RadioFrame* radio_on_air(const cosim::TraceRow& row);
 

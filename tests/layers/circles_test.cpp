@@ -27,7 +27,7 @@ const std::map<std::string, std::size_t> kKnown = {
     {"linuxboard/coordinator", 2},  // with its experiments
     {"linuxboard/shim/devices", 2},
     {"linuxboard/shim/preload", 4},
-    {"scenarios/reader", 3},  // with events and faults
+    {"scenarios/reader", 4},  // with compose, events and faults
 };
 
 Includes includes() {

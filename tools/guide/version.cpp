@@ -36,7 +36,8 @@ void declare_help(Command& app, int& status) {
     auto words = std::make_shared<std::vector<std::string>>();
     Command* command = app.add_subcommand("help", "what a command does, with its options");
     command->add_option("command", *words, "its name, such as run or \"trace decode\"")->type_name("COMMAND");
-    command->callback([&status] { status = 0; });  // program.cpp turns the words round before they get here
+    command->callback(
+        [&status] { status = 0; });  // tools/cli/program.cpp turns the words round before they get here
 }
 
 void declare_test(Command& app, int&) {
