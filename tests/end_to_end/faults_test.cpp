@@ -96,6 +96,13 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
         CHECK(held.status == 1);
         CHECK_THAT(held.err, Contains(why));
     }
+    // A line that is low on a bus at rest is there for all to see.
+    const Ended rest = bench.run("q", {bench.hello(), "--duration", "1.2", "--in-process", "--fault",
+                                       "sda link=robot0.i2c at=1ms time=1ms"});
+    CHECK(rest.status == 0);
+    CHECK(bench.report("q")["faults"][0]["fired"] == 1);
+    CHECK_THAT(bench.report("q")["faults"][0]["firings"][0]["what"].get<std::string>(),
+               Contains("on a bus at rest"));
     const std::string allowed = bench.hello(fault("begin = \"1 h\"\nmay_not_fire = true\nname = \"late\"\n"));
     REQUIRE(bench.run("p", {allowed, "--duration", "1", "--in-process"}).status == 0);
     CHECK(bench.report("p")["faults"][0]["name"] == "late");
