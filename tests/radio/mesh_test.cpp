@@ -322,7 +322,7 @@ TEST_CASE("what happens does not depend on how time is granted") {
     }
 }
 
-TEST_CASE("a module that goes off while its broadcast waits is told nothing, and no bound breaks") {
+TEST_CASE("a module that goes off while its broadcast waits hears nothing, and no bound breaks") {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         CAPTURE(seed);
         RandomStream random(seed, "off");

@@ -229,7 +229,7 @@ namespace {
 /// F_SETFL changes these.
 constexpr int kSettableFlags = O_APPEND | O_NONBLOCK | O_NOATIME;
 
-/// Locks of a device: only processes that know each other contend for it, and the host's file behind it is
+/// Locks of a device: only processes that know each other contend for it, and the host's file in its place is
 /// everybody's.
 int lock_device(int command, long argument) {
     struct flock lock {};
