@@ -6,6 +6,19 @@ namespace puckloop {
 
 namespace {
 
+/// What a user gave may hold anything: control characters would break the line or steer his terminal.
+std::string without_controls(std::string_view text) {
+    std::string plain;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x20 || code == 0x7F)
+            plain += fmt::format("\\x{:02x}", code);
+        else
+            plain += c;
+    }
+    return plain;
+}
+
 std::string one_line(std::string_view file, std::string_view place, std::string_view problem,
                      std::string_view expected) {
     std::string text;
@@ -13,7 +26,7 @@ std::string one_line(std::string_view file, std::string_view place, std::string_
     if (!place.empty()) text += fmt::format("{}: ", place);
     text += problem;
     if (!expected.empty()) text += fmt::format(" (expected {})", expected);
-    return text;
+    return without_controls(text);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "tests/fuzz/target.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
@@ -155,7 +156,8 @@ int run(int argc, char** argv) {
     }
     if (seeds.empty()) return refuse("give at least one seed");
 
-    KeptInput kept(fs::path(argv[0]).filename().string() + ".input");
+    const fs::path program = *argv;
+    KeptInput kept(program.filename().string() + ".input");
     for (const Octets& bytes : seeds) {
         kept.keep(Input(bytes).first(std::min(bytes.size(), 2 * kLongest)));
         run_input(bytes);
