@@ -125,6 +125,7 @@ TEST_CASE("the campaigns that ship can be run") {
     ::setenv("PUCKLOOP_IMAGES", PUCKLOOP_SOURCE "/firmware/epuck", 1);
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(PUCKLOOP_SOURCE "/campaigns")) {
+        if (entry.path().extension() != ".toml") continue;  // the rooms and notes of the folder
         CAPTURE(entry.path().string());
         Campaign campaign = read_campaign(entry.path());
         campaign.firmware.clear();  // not everybody has the original one

@@ -85,17 +85,10 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     CHECK_THAT(parity.err, Contains("frames without a parity bit are no candidates"));
     CHECK(bench.report("o")["success"] == false);
     CHECK(bench.report("o")["faults"][0]["fired"] == 0);
-    const std::pair<const char*, const char*> plain[] = {
-        {"kill node=robot0.linux at=1ms", "its program was not running then"},
-        {"sda link=robot0.i2c at=1ms time=1ms", "no byte that it is for was on the bus"},
-    };
-    for (const auto& [text, why] : plain) {
-        INFO(text);
-        const Ended held =
-            bench.run("o", {bench.hello(), "--duration", "1.2", "--in-process", "--fault", text});
-        CHECK(held.status == 1);
-        CHECK_THAT(held.err, Contains(why));
-    }
+    const Ended held = bench.run("o", {bench.hello(), "--duration", "1.2", "--in-process", "--fault",
+                                       "kill node=robot0.linux at=1ms"});
+    CHECK(held.status == 1);
+    CHECK_THAT(held.err, Contains("its program was not running then"));
     // A line that is low on a bus at rest is there for all to see.
     const Ended rest = bench.run("q", {bench.hello(), "--duration", "1.2", "--in-process", "--fault",
                                        "sda link=robot0.i2c at=1ms time=1ms"});
