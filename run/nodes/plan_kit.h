@@ -2,6 +2,7 @@
 // What the parts of a run's set-up share.
 
 #include "cosim/core/signal_info.h"
+#include "run/description/run_request.h"
 #include "run/description/run_setup.h"
 
 #include <cstdint>

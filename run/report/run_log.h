@@ -3,6 +3,7 @@
 // and how long each phase took.
 
 #include "cosim/conductor.h"
+#include "run/description/run_request.h"
 #include "run/description/run_setup.h"
 
 #include <chrono>
