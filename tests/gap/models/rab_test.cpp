@@ -2,7 +2,7 @@
 // parameter acts by the amount of its equation.
 
 #include "base/random.h"
-#include "physics/ir/ir_fate.h"
+#include "physics/ir/burst_outcomes.h"
 #include "physics/ir/published_strengths.h"
 #include "protocols/rab_reading.h"
 #include "tests/gap/models/made_table.h"
@@ -303,10 +303,10 @@ TEST_CASE("with the ring, reflections turn bearings as the medium's do") {
     constexpr int kDraws = 20000;
     physics::IrParameters parameters = physics::Parameters().ir;
     parameters.stray = kShare;
-    physics::IrFate fate(parameters, Catch::rngSeed(), "a>b");
+    physics::BurstOutcomes outcomes(parameters, Catch::rngSeed(), "a>b");
     double turned = 0.0, squares = 0.0;
     for (int k = 0; k < kDraws; ++k) {
-        const auto parts = static_cast<double>(fate.next().turn);
+        const auto parts = static_cast<double>(outcomes.next().turn);
         const double turn = std::remainder(parts * 2 * std::numbers::pi / 12, 2 * std::numbers::pi);
         turned += turn != 0.0 ? 1 : 0;
         squares += turn * turn;
