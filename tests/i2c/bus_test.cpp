@@ -276,8 +276,9 @@ TEST_CASE("descriptions of a bus are checked") {
                       Catch::StartsWith("i2c_bus.hertz: has the wrong type"));
     CHECK_THROWS_WITH(from_value(spec, parse_json(R"({"hertz":10})"), "i2c_bus"),
                       "i2c_bus.hertz: must be 1000 to 3.4e+06 Hz");
-    from_value(spec, parse_json(R"({"name":"e1.i2c","rgb_turret":false})"), "i2c_bus");
-    CHECK(make_bus_node(spec)->name() == "e1.i2c");
+    BusSpec good;
+    from_value(good, parse_json(R"({"name":"e1.i2c","rgb_turret":false})"), "i2c_bus");
+    CHECK(make_bus_node(good)->name() == "e1.i2c");
 }
 
 TEST_CASE("the world publishes what the ground sensor listens to") {
