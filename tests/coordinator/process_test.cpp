@@ -292,7 +292,7 @@ TEST_CASE("wrong use is one line and status 2") {
     with_file("durations = [1, \"x\"]\n", "line 1: durations: 'x' cannot be used");
     with_file("experiment = \"dance\"\n", "line 1: experiment: 'dance' is none");
     with_file("[table]\nx = 1\n", "line 1: is no single value");
-    with_file("dead_time = \n", "line 1: ");
+    with_file("dead_time = \n", "line 1, column 1: missing value");
     refused({"--draw", config.string()}, config.string() + ": line 1: is not the head of an event table");
     std::filesystem::remove(config);
 }

@@ -146,7 +146,6 @@ TEST_CASE("exec refuses what it cannot use with one line and status 2") {
     const std::string master = bench.file("master.txt", "0 w 0x20 00\n");
     const std::string stimulus = bench.file("s.txt", "0 proximty0 1\n");
     const std::pair<std::string, const char*> cases[] = {
-        {image, "no board is on the bench"},
         {"--board pic", "IMAGE: missing"},
         {"--board nic " + image, "no board 'nic' (expected pic or rab or tam; did you mean pic?)"},
         {"--mcu dspic30f " + image, "no chip 'dspic30f'"},

@@ -66,7 +66,7 @@ TEST_CASE("files that are not TOML are refused with a line") {
     CHECK(message_of([] { read_toml("/nonexistent/x.toml"); }) ==
           "/nonexistent/x.toml: cannot be opened: No such file or directory (expected a TOML file)");
     const TemporaryFile file("[run]\nduration = \n");
-    CHECK(message_of([&] { read_toml(file.path()); }).find(": line 2: ") != std::string::npos);
+    CHECK(message_of([&] { read_toml(file.path()); }).find(": line 2, column ") != std::string::npos);
 }
 
 TEST_CASE("no mutation of a scenario crashes the reader") {
