@@ -71,7 +71,7 @@ struct ModuleOptions {
             field("parameters", &ModuleOptions::parameters,
                   "what was written into its flash: commands with values, in the range of the table")
                 .as<FlashParameters>(),
-            field("node_identifier", &ModuleOptions::node_identifier, "NI"),
+            field("node_identifier", &ModuleOptions::node_identifier, "NI, its name on the mesh"),
             field("start_s", &ModuleOptions::start, "switched on").in("s").at_least(0).as<cosim::Seconds>(),
             field("boot_s", &ModuleOptions::boot, "from reset to modem status, not below processing_s")
                 .in("s")

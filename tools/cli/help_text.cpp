@@ -16,6 +16,23 @@ std::size_t line_end(std::string_view text, std::size_t room) {
     return std::min(text.find(' '), text.size());
 }
 
+/// Each line of `text` below the one before, from `column` on; what is too long goes on below its own text,
+/// or below the second column of a list ("rab2      two of them").
+std::string lines_at(const std::string& text, std::size_t column) {
+    std::string lines;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string line = text.substr(at, end - at);
+        const std::size_t gap = line.find("  ");
+        const std::size_t second = gap == std::string::npos ? gap : line.find_first_not_of(' ', gap);
+        const std::size_t deeper = second == std::string::npos ? 0 : second;
+        if (at > 0) lines += "\n" + std::string(column, ' ');
+        lines += line.substr(0, deeper) + wrapped(line.substr(deeper), column + deeper, column + deeper);
+        at = end + 1;
+    }
+    return lines;
+}
+
 std::string two_columns(const std::string& name, const std::string& text) {
     constexpr std::size_t kIndent = 2, kDeep = 6;
     std::string left = std::string(kIndent, ' ') + wrapped(name, kIndent, kDeep);
@@ -23,7 +40,7 @@ std::string two_columns(const std::string& name, const std::string& text) {
     const bool fits = left.find('\n') == std::string::npos && left.size() < HelpText::kColumn;
     left +=
         fits ? std::string(HelpText::kColumn - left.size(), ' ') : "\n" + std::string(HelpText::kColumn, ' ');
-    return left + wrapped(text, HelpText::kColumn, HelpText::kColumn) + "\n";
+    return left + lines_at(text, HelpText::kColumn) + "\n";
 }
 
 }  // namespace
