@@ -37,7 +37,7 @@ TEST_CASE("snapshots of another run, and options that contradict them, are refus
         check_one_line(bench.run("refused", words), 2, said);
         CHECK(text_of(bench.out("refused") / "trace.csv") == "of an earlier run\n");
     };
-    refused({scenario.string()}, {"--from", "whatever a scenario says"});
+    refused({scenario.string()}, {"--from", "whatever a scenario gives"});
     refused({"--seed", "3"}, {"--from", "--seed"});
     refused({"--record"}, {"--record", "lacks the messages before it"});
     refused({"--realtime"}, {"--from", "real time"});
