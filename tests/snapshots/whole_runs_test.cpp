@@ -54,7 +54,7 @@ void check_same_files(const Workbench& bench, const std::string& a, const std::s
         for (auto* report : {&left, &right})
             if ((*report)["nodes"].contains(log)) (*report)["nodes"][log].erase("log");
     for (auto* report : {&left, &right}) {
-        for (const char* key : {"wall_s", "real_time_factor", "grants", "from"})
+        for (const char* key : {"wall_s", "real_time_factor", "grants", "from", "command_line"})
             report->erase(key);
         for (auto& node : (*report)["nodes"])
             for (const char* key : {"grants", "requests", "answered_by_library"})
