@@ -23,6 +23,7 @@ PLACES = {
     "\n[[speaker]]\nposition = [\"0 m\", \"0 m\"]\nlevel = 100\n": ("speaker",),
     "\n[[floor_patch]]\ncentre = [\"0 m\", \"0 m\"]\ngrey = 0\nsize = [\"1 cm\", \"1 cm\"]\n": ("floor_patch",),
     "\n[light]\n": ("light",),
+    "\n[[group]]\ncount = 1\n[group.pic]\nfirmware = \"own\"\n[group.place]\n": ("group", "place"),
     "\n[[tam]]\nposition = [\"0 m\", \"0 m\"]\n": ("tam",),
     "\n[radio]\n": ("radio",), "\n[bluetooth]\n": ("bluetooth",), "\n[ircom]\n": ("ircom",),
     "\n[[can_bus]]\ncontrollers = [\"robot0.pic.can1\", \"robot0.pic.can2\"]\n": ("can_bus",),
@@ -71,7 +72,7 @@ class Scenario(InFolder):
             self.assertIs(table["additionalProperties"], False, path)
             # Keys that only other keys lead to are the schema's alone.
             if path not in ((), ("floor_patch",), ("fault",), ("event",), ("coordinator",), ("arena",), ("bluetooth",),
-                            ("robot", "linux")):
+                            ("robot", "linux"), ("group", "place")):
                 self.assertEqual(keys, set(table["properties"]), f"{path}")
         self.assertGreater(compared, 100)
 

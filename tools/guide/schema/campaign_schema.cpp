@@ -33,7 +33,7 @@ ordered_json campaign_schema() {
         list_schema(table_schema("what counts as mission", kMetric, {"name", "tolerance"}));
     ordered_json sweep = table_schema("a grid of faults", kSweep, {"fault"});
     // Any key of a [[fault]] table, and lists of them in `over`.
-    sweep["properties"]["fault"] = scenario_schema()["properties"]["fault"]["items"];
+    sweep["properties"]["fault"] = fault_schema();
     sweep["properties"]["over"] = {{"type", "object"},
                                    {"additionalProperties", {{"type", "array"}, {"minItems", 1}}}};
     sweep["properties"]["times"] = table_schema("when it begins", kTimes, {"from", "to", "step"});

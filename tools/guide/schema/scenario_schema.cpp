@@ -46,7 +46,9 @@ constexpr SchemaKey kSpeaker[]{
     {"times", "integer", "so often"}, {"wave", "text", "form of its sound"}, {"tone", "frequency", ""}, {"sweep_to", "frequency", ""}};
 constexpr SchemaKey kPatch[]{
     {"name", "text", ""}, {"centre", "lengths2", ""}, {"heading", "angle", ""}, {"grey", "ratio", "1 is white, 0 black"},
-    {"shape", "text", "rectangle (default) or disc"}, {"radius", "length", "of a disc"}, {"size", "lengths2", "of a rectangle"}};
+    {"shape", "text", "rectangle (default) or disc"}, {"radius", "length", "of a disc"}, {"size", "lengths2", "of a rectangle or an image"},
+    {"image", "text", "PNG file in place of grey: its first row is the furthest north"},
+    {"stretch", "flag", "the image's pixels need not be square"}};
 constexpr SchemaKey kLight[]{{"ambient", "ratio", "0 dark, 1 an ordinary room, 12 the brightest that sensors distinguish"}};
 constexpr SchemaKey kRobot[]{
     {"name", "text", "names its nodes, links and log files; default robot0, robot1, ..."},
@@ -76,7 +78,7 @@ constexpr SchemaKey kProgram[]{
     {"tty_batch", "time", ""}, {"i2c_hold", "time", ""}, {"oversleep", "time", ""}, {"oversleep_jitter", "time", ""}};
 constexpr SchemaKey kSignal[]{{"at", "time", ""}, {"send", "text", "INT, TERM, USR1, ..."}};
 constexpr SchemaKey kLinux[]{
-    {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
+    {"arguments", "texts", "more of them, behind program's or --linux's"}, {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
     {"save_frames", "integer", "every so-many-th frame is kept as a picture"}};
 constexpr SchemaKey kIrcom[]{{"record", "flag", "every edge of light in trace.csv"}};
 constexpr SchemaKey kTam[]{
@@ -97,6 +99,17 @@ constexpr SchemaKey kCoordinator[]{
 constexpr SchemaKey kBluetooth[]{
     {"range", "length", ""}, {"discovery", "time", ""}, {"name_time", "times2", "mean, standard deviation"},
     {"link_time", "times2", ""}, {"release_time", "times2", ""}};
+constexpr SchemaKey kGroup[]{
+    {"of", "text", "robot (default), box, cylinder or lamp"}, {"count", "integer", "1 to 1000 units"},
+    {"first", "integer", "number of the first one; default 0"},
+    {"name", "text", "{n} stands for the number, here and in any text of a unit"}, {"names", "texts", "in place of name, first and count"}};
+constexpr SchemaKey kPlace[]{
+    {"kind", "text", "arena (default), disc, rectangle, normal, grid, ring or list"}, {"centre", "lengths2", "of the region"},
+    {"radius", "length", "of a disc or ring"}, {"size", "lengths2", "of a rectangle"}, {"deviation", "lengths2", "of a normal distribution"},
+    {"distance", "lengths2", "between units of a grid"}, {"columns", "integer", ""}, {"rows", "integer", ""},
+    {"start", "angle", "of the first unit on a ring"}, {"positions", "any", "of a list: [[\"x\", \"y\"], ...]"},
+    {"headings", "any", "of a list"}, {"heading", "text", "an angle, a distribution, or in or out on a ring"},
+    {"max_trials", "integer", "until a unit that finds no room is an error; default 1000"}, {"gap", "length", "kept between units"}};
 constexpr SchemaKey kCan[]{{"name", "text", ""}, {"controllers", "texts", "robot0.pic.can1, ..."}};
 constexpr SchemaKey kFault[]{
     {"name", "text", ""}, {"link", "text", "robot0.uart, robot0.i2c, ..."}, {"node", "text", "robot0.pic, ..."},
@@ -136,6 +149,7 @@ ordered_json robot_schema() {
     properties["pic"] = std::move(pic);
     properties["rab"] = table_schema("the range-and-bearing board", kRab, {"firmware"});
     properties["linux"] = program_schema("the Linux board and its program", kLinux);
+    properties["linux"].erase("required");  // `arguments` alone go with --linux
     properties["parameters"] = parameters_schema();
     return robot;
 }
@@ -162,22 +176,6 @@ ordered_json coordinator_schema() {
     return place;
 }
 
-/// Kinds and their keys come from the table that carries them out.
-ordered_json fault_schema() {
-    ordered_json fault = table_schema("a fault of a link or node (docs/faults.md)", kFault);
-    std::set<std::string> kinds;
-    for (const cosim::KindInfo& kind : cosim::all_kinds()) {
-        kinds.emplace(kind.name);
-        if (!kind.alias.empty()) kinds.emplace(kind.alias);
-        for (const cosim::ParameterInfo& parameter : kind.parameters) {
-            ordered_json& property = fault["properties"][std::string(parameter.key)];
-            if (property.is_null()) property = ordered_json::object();
-        }
-    }
-    fault["properties"]["kind"] = {{"type", "string"}, {"enum", kinds}, {"default", "drop"}};
-    return fault;
-}
-
 /// What an event does comes from the table of commands; a new thing has the keys of its own table.
 ordered_json event_schema() {
     ordered_json event = table_schema("something that happens to the world", kEvent);
@@ -194,7 +192,63 @@ ordered_json event_schema() {
     return event;
 }
 
+/// In place of a value that is no text: the text of a pattern.
+ordered_json or_text(ordered_json value, const char* pattern) {
+    return {{"anyOf", {std::move(value), {{"type", "string"}, {"pattern", pattern}}}}};
+}
+
+/// Lets a text like `pattern` stand wherever a value does, as a variable may.
+void allow_text(ordered_json& schema, const char* pattern) {
+    if (schema.contains("properties"))
+        for (ordered_json& property : schema["properties"])
+            allow_text(property, pattern);
+    else if (schema.contains("items"))
+        allow_text(schema["items"], pattern);
+    else if (schema.contains("type") && schema["type"] == "string" && !schema.contains("pattern"))
+        return;  // any text is one
+    else if (schema.contains("anyOf"))
+        schema["anyOf"].push_back({{"type", "string"}, {"pattern", pattern}});
+    else if (schema.contains("type") || schema.contains("enum")) {
+        ordered_json about = schema.contains("description") ? schema["description"] : ordered_json();
+        schema.erase("description");
+        schema = or_text(schema, pattern);
+        if (!about.is_null()) schema["description"] = about;
+    }
+}
+
+/// A group has its units' keys, without where they are; their values may be drawn.
+ordered_json group_schema() {
+    ordered_json group = robot_schema();
+    group["description"] = "many of one kind, placed and spread by the seed (docs/swarm.md)";
+    group.erase("required");
+    add_keys(group, kBox);
+    add_keys(group, kCylinder);
+    add_keys(group, kLamp);
+    for (const char* key : {"position", "centre", "heading"})
+        group["properties"].erase(key);
+    add_keys(group, kGroup);
+    group["properties"]["place"] = table_schema("where the units are", kPlace);
+    allow_text(group, "^(normal|uniform|choice)\\(");
+    return group;
+}
+
 }  // namespace
+
+// Kinds and their keys come from the table that carries them out.
+ordered_json fault_schema() {
+    ordered_json fault = table_schema("a fault of a link or node (docs/faults.md)", kFault);
+    std::set<std::string> kinds;
+    for (const cosim::KindInfo& kind : cosim::all_kinds()) {
+        kinds.emplace(kind.name);
+        if (!kind.alias.empty()) kinds.emplace(kind.alias);
+        for (const cosim::ParameterInfo& parameter : kind.parameters) {
+            ordered_json& property = fault["properties"][std::string(parameter.key)];
+            if (property.is_null()) property = ordered_json::object();
+        }
+    }
+    fault["properties"]["kind"] = {{"type", "string"}, {"enum", kinds}, {"default", "drop"}};
+    return fault;
+}
 
 ordered_json scenario_schema() {
     ordered_json schema = schema_head("scenario", "a puckloop scenario (docs/scenario.md)");
@@ -211,6 +265,7 @@ ordered_json scenario_schema() {
     properties["light"] = table_schema("the room's light", kLight);
     properties["parameters"] = parameters_schema();
     properties["robot"] = list_schema(robot_schema());
+    properties["group"] = list_schema(group_schema());
     properties["tam"] = list_schema(tam_schema());
     properties["radio"] = table_schema("the air between radio modules", kRadio);
     properties["coordinator"] = coordinator_schema();
@@ -219,6 +274,11 @@ ordered_json scenario_schema() {
     properties["ircom"] = table_schema("words by the light of proximity sensors", kIrcom);
     properties["fault"] = list_schema(fault_schema());
     properties["event"] = list_schema(event_schema());
+    allow_text(schema, R"(\$\{)");
+    properties["include"] = value_schema("texts", "files whose tables are read first");
+    properties["variables"] = {{"type", "object"},
+                               {"description", "what ${NAME} stands for; --set NAME=VALUE replaces it"},
+                               {"additionalProperties", true}};
     return schema;
 }
 

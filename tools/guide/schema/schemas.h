@@ -8,6 +8,8 @@ namespace puckloop::tools {
 
 /// A scenario: tables and keys of scenarios/reader.
 nlohmann::ordered_json scenario_schema();
+/// A [[fault]] table.
+nlohmann::ordered_json fault_schema();
 /// A campaign of faults: campaigns/engine/campaign_file.h.
 nlohmann::ordered_json campaign_schema();
 /// report.json of a run.
