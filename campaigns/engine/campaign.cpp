@@ -90,6 +90,13 @@ class Conduct {
         write_table(results);
         write_html(results);
         fmt::print("{}", summary(results));
+        const auto failures =
+            std::count_if(results.results.begin(), results.results.end(), [](const CaseResult& result) {
+                return result.verdict.outcome == Outcome::PuckloopFailed;
+            });
+        if (failures > 0)
+            fmt::print(stderr, "puckloop: in {} case{} puckloop itself failed: {} nothing of the robot\n",
+                       failures, failures == 1 ? "" : "s", failures == 1 ? "it shows" : "they show");
     }
 
   private:
@@ -273,9 +280,8 @@ Verdict replay(const Results& results, int id, const fs::path& folder) {
         throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
                          "a case of results.csv that was run");
     // Whole, not from a snapshot: a second opinion.
-    execute(results.campaign, found->one, folder, {boots_folder(results.out)});
-    return judge(results.campaign, read_profile(nominal_folder(results.out, found->one.seed)),
-                 read_profile(folder), found->one.faults.size());
+    return run_case(results.campaign, found->one, folder, {boots_folder(results.out)},
+                    read_profile(nominal_folder(results.out, found->one.seed)));
 }
 
 }  // namespace puckloop::faults

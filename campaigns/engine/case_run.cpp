@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <new>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -31,6 +32,7 @@ namespace {
 constexpr double kStall = 60.0;  ///< s of wall time: a busy machine must not make a hang
 constexpr int kFailed = 3;       ///< status of a child that leaves a message
 constexpr int kRefused = 2;      ///< the same, of what the user gave
+constexpr int kBroke = 4;        ///< the same, of an exception that nothing outside explains
 
 tools::RunRequest request_of(const Campaign& campaign) {
     tools::RunRequest request;
@@ -49,6 +51,20 @@ bool names_disk(const std::string& text) {
     constexpr std::array kErrors{ENOSPC, EDQUOT};
     return std::any_of(kErrors.begin(), kErrors.end(),
                        [&](int error) { return text.find(std::strerror(error)) != std::string::npos; });
+}
+
+/// The emulator broke off in the midst of the run. The run's report states it, and the verdict is taken from
+/// there; a file that cannot be written is another matter.
+bool broke_off(const cosim::Outcome& outcome) {
+    return outcome.reason == cosim::EndReason::Failed && outcome.grants > 0 && !names_disk(outcome.text) &&
+           outcome.text.find("cannot be written") == std::string::npos &&
+           outcome.text.find("cannot write") == std::string::npos;
+}
+
+/// Signals that come from outside: of the user, of a machine without memory, of a limit.
+bool is_from_outside(int signal) {
+    constexpr std::array kSignals{SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ};
+    return std::find(kSignals.begin(), kSignals.end(), signal) != kSignals.end();
 }
 
 /// A program may have met a full disk without a word of ours; empty if there is room.
@@ -92,13 +108,19 @@ std::string full_disk(const std::filesystem::path& folder) {
         }
         // No fault of the case's: results that cannot be written, say.
         const bool ours = outcome.node.empty() && outcome.text.find("never fired") == std::string::npos;
-        if (!outcome.success && (ours || names_disk(outcome.text))) problem = outcome.text;
+        if (!outcome.success && !broke_off(outcome) && (ours || names_disk(outcome.text)))
+            problem = outcome.text;
         if (problem.empty()) problem = full_disk(folder);
     } catch (const InputError& error) {
         problem = error.what();
         status = kRefused;
+    } catch (const RunError& error) {
+        problem = error.what();
+    } catch (const std::bad_alloc&) {
+        problem = "no memory is left";
     } catch (const std::exception& error) {
         problem = error.what();
+        status = kBroke;
     }
     if (problem.empty()) ::_exit(0);
     [[maybe_unused]] const auto written = ::write(message, problem.data(), problem.size());
@@ -186,12 +208,40 @@ void execute(const Campaign& campaign, const Case& one, const std::filesystem::p
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (WIFSIGNALED(status))
-        throw RunError(fmt::format("puckloop itself was ended by SIG{}", sigabbrev_np(WTERMSIG(status))));
+    if (WIFSIGNALED(status)) {
+        const std::string how =
+            fmt::format("puckloop itself was ended by SIG{}", sigabbrev_np(WTERMSIG(status)));
+        if (is_from_outside(WTERMSIG(status))) throw RunError(how);
+        if (const std::string full = full_disk(folder); !full.empty()) throw RunError(full);
+        throw PuckloopFailed(how);
+    }
+    if (WEXITSTATUS(status) == kBroke) throw PuckloopFailed("puckloop itself threw: " + problem);
     if (WEXITSTATUS(status) == kRefused) throw InputError("", "", problem);
     if (WEXITSTATUS(status) != 0)
         throw RunError(problem.empty() ? fmt::format("a run ended with status {}", WEXITSTATUS(status))
                                        : problem);
+}
+
+Verdict run_case(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
+                 const CaseStart& start, const Profile& nominal) {
+    Verdict verdict;
+    try {
+        execute(campaign, one, folder, start);
+        verdict = judge(campaign, nominal, read_profile(folder), one.faults.size());
+    } catch (const PuckloopFailed& failure) {
+        verdict = failed_verdict(one.faults.size(), failure.what());
+    }
+    if (verdict.outcome != Outcome::PuckloopFailed || !start.snapshot) return verdict;
+    const std::string before = verdict.detail;
+    CaseStart whole = start;
+    whole.snapshot = nullptr;
+    verdict = run_case(campaign, one, folder, whole, nominal);
+    if (verdict.outcome == Outcome::PuckloopFailed) return verdict;
+    fmt::print(stderr, "puckloop: case {}: from a snapshot puckloop failed ({}): it is run whole\n", one.id,
+               before);
+    verdict.detail += fmt::format("{}from a snapshot puckloop failed ({}), so it was run whole",
+                                  verdict.detail.empty() ? "" : "; ", before);
+    return verdict;
 }
 
 }  // namespace puckloop::faults

@@ -1,6 +1,7 @@
 #pragma once
 // Running one case: a `puckloop run` in a process of its own, and its verdict.
 
+#include "base/error.h"
 #include "campaigns/engine/case.h"
 #include "campaigns/engine/outcome.h"
 #include "campaigns/engine/prefixes.h"
@@ -36,9 +37,20 @@ struct CaseStart {
     std::filesystem::path snapshots{};   ///< this folder (prefixes.h)
 };
 
-/// Runs it with all results in `folder`, which it replaces. Throws RunError if the run could not be made
-/// (disk full, puckloop itself died).
+/// The run did not come to its end because the emulator itself crashed or threw.
+class PuckloopFailed : public RunError {
+  public:
+    using RunError::RunError;
+};
+
+/// Runs it with all results in `folder`, which it replaces. Throws PuckloopFailed, or RunError if the run
+/// could not be made (disk full, its process killed from outside).
 void execute(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
              const CaseStart& start);
+
+/// Runs it likewise, and judges it. A case that makes the emulator fail has a verdict like any other; one
+/// that does so only when it goes on from a snapshot is run whole, and its verdict's detail states both.
+Verdict run_case(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
+                 const CaseStart& start, const Profile& nominal);
 
 }  // namespace puckloop::faults

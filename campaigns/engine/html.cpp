@@ -34,6 +34,8 @@ struct Look {
     const char* meaning;
 };
 constexpr Look kLooks[] = {
+    {Outcome::PuckloopFailed, "p", "!", "#000000",
+     "the emulator itself crashed, broke a time bound or threw: the case shows nothing of the robot"},
     {Outcome::NotFired, "n", "-", "#ffffff", "the fault never did anything: the case shows nothing"},
     {Outcome::Crash, "c", "X", "#7b1fa2", "a program or a node ended by itself"},
     {Outcome::ResetLoop, "l", "L", "#ad1457", "a board was reset again and again"},
@@ -49,7 +51,7 @@ const Look& look_of(Outcome outcome) {
                          [&](const Look& look) { return look.outcome == outcome; });
 }
 
-/// Of several cases in one cell the worst is shown: crash first, then in the order of precedence.
+/// Of several cases in one cell the worst is shown: puckloop failed, crash, then in the order of precedence.
 bool worse(Outcome a, Outcome b) {
     const auto rank = [](Outcome outcome) {
         if (outcome == Outcome::NotFired) return 100;
@@ -188,8 +190,8 @@ std::string html_text(const Results& results) {
     std::string style;
     for (const Look& look : kLooks)
         style += fmt::format(".{}{{background:{};color:{}}}\n", look.name, look.colour,
-                             std::string_view("clh").find(look.name[0]) != std::string_view::npos ? "#fff"
-                                                                                                  : "#222");
+                             std::string_view("pclh").find(look.name[0]) != std::string_view::npos ? "#fff"
+                                                                                                   : "#222");
     const std::string name = escaped(results.campaign.file.filename().string());
     std::string html = fmt::format(kHead, name, style);
     html += fmt::format("<h1>Fault campaign {}</h1>\n<p>{}. Each case is one run with one or two faults, "

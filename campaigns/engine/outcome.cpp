@@ -13,9 +13,9 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kNames{"not fired", "crash",     "reset loop", "hang",
-                                                 "degraded",  "recovered", "detected",   "silent corruption",
-                                                 "masked"};
+constexpr std::array<std::string_view, 10> kNames{
+    "puckloop failed", "not fired", "crash",    "reset loop",        "hang",
+    "degraded",        "recovered", "detected", "silent corruption", "masked"};
 constexpr double kPauseShare = 0.5;  ///< a pause has to exceed the nominal one's by this share, too
 
 double end_of(const Profile& run) {
@@ -86,6 +86,14 @@ struct Judge {
         if (report.value("success", false)) return true;
         const auto failures = report.find("failures");
         return failures != report.end() && !failures->empty();
+    }
+
+    /// The run ended where the emulator itself could not go on.
+    bool failed() {
+        const std::string why = run.report.value("ended_why", "");
+        if (run.report.value("ended_by", "") != "failed" || is_stall(why)) return false;
+        note(shape_of(without_folders(why)), fmt::format(" ({})", why));
+        return true;
     }
 
     bool crashed() {
@@ -219,8 +227,8 @@ std::optional<Outcome> outcome_of(std::string_view name) {
 }
 
 bool is_finding(Outcome outcome) {
-    return outcome == Outcome::Crash || outcome == Outcome::ResetLoop || outcome == Outcome::Hang ||
-           outcome == Outcome::Degraded || outcome == Outcome::SilentCorruption;
+    return outcome == Outcome::PuckloopFailed || outcome == Outcome::Crash || outcome == Outcome::ResetLoop ||
+           outcome == Outcome::Hang || outcome == Outcome::Degraded || outcome == Outcome::SilentCorruption;
 }
 
 std::optional<double> measure(const Metric& metric, const Profile& run) {
@@ -237,11 +245,26 @@ std::optional<double> measure(const Metric& metric, const Profile& run) {
     return run.report.at(place).get<double>();
 }
 
+Verdict failed_verdict(std::size_t faults, const std::string& why) {
+    Verdict verdict;
+    verdict.outcome = Outcome::PuckloopFailed;
+    verdict.fired.resize(faults, 0);
+    verdict.symptoms = {shape_of(without_folders(why))};
+    verdict.detail = why;
+    return verdict;
+}
+
 Verdict judge(const Campaign& campaign, const Profile& nominal, const Profile& run, std::size_t faults) {
     Verdict verdict;
     verdict.trace_sha256 = run.report.value("trace_sha256", "");
     read_fired(run, faults, verdict);
     Judge judge{campaign, nominal, run, verdict};
+    if (judge.failed()) {
+        // How far it came shows nothing of the robot, and may hang on where the run began.
+        verdict.outcome = Outcome::PuckloopFailed;
+        verdict.trace_sha256.clear();
+        return verdict;
+    }
     judge.measure_departure();
     // All are looked at, so that the symptoms are whole; the first that is true decides.
     const bool crash = judge.crashed(), loop = judge.reset_again_and_again(), hang = judge.hung(),

@@ -13,6 +13,7 @@
 namespace puckloop::faults {
 
 enum class Outcome {
+    PuckloopFailed,
     NotFired,
     Crash,
     ResetLoop,
@@ -24,13 +25,14 @@ enum class Outcome {
     Masked,
 };
 /// In the order of their precedence.
-inline constexpr std::array kOutcomes{
-    Outcome::NotFired,  Outcome::Crash,    Outcome::ResetLoop,        Outcome::Hang,  Outcome::Degraded,
-    Outcome::Recovered, Outcome::Detected, Outcome::SilentCorruption, Outcome::Masked};
+inline constexpr std::array kOutcomes{Outcome::PuckloopFailed, Outcome::NotFired, Outcome::Crash,
+                                      Outcome::ResetLoop,      Outcome::Hang,     Outcome::Degraded,
+                                      Outcome::Recovered,      Outcome::Detected, Outcome::SilentCorruption,
+                                      Outcome::Masked};
 
 std::string_view name_of(Outcome outcome);
 std::optional<Outcome> outcome_of(std::string_view name);
-/// Crash, reset loop, hang, degraded, silent corruption.
+/// Puckloop failed, crash, reset loop, hang, degraded, silent corruption.
 bool is_finding(Outcome outcome);
 
 struct Verdict {
@@ -50,6 +52,9 @@ Verdict verdict_from_json(const nlohmann::json& text);
 
 /// Value of a metric in a run; none if the run has no such number.
 std::optional<double> measure(const Metric& metric, const Profile& run);
+
+/// Of a run that the emulator itself did not survive; `why` in one line.
+Verdict failed_verdict(std::size_t faults, const std::string& why);
 
 /// `faults`: how many the case has; they are the last of the report's. `duration`: simulated time after which
 /// programs are asked to end, s.

@@ -1,6 +1,7 @@
 #include "campaigns/engine/pool.h"
 
 #include "base/error.h"
+#include "campaigns/engine/outcome.h"
 
 #include <fmt/format.h>
 
@@ -155,7 +156,7 @@ class Pool {
         const nlohmann::json result = nlohmann::json::parse(line);
         const Case one = worker.busy.value();
         if (result.contains("problem"))
-            try_again(one, result.at("problem"));
+            try_again(one, result.at("problem"), false);
         else
             take_(result.at("id"), result.at("verdict"));
         give_next(worker);
@@ -165,15 +166,18 @@ class Pool {
         const std::optional<Case> lost = workers_[index]->busy;
         const pid_t id = workers_[index]->id();
         const std::string end = workers_[index]->wait();
-        if (lost) try_again(*lost, fmt::format("worker {} died ({})", id, end));
+        if (lost) try_again(*lost, fmt::format("worker {} died ({})", id, end), true);
         workers_[index] = std::make_unique<Worker>(options_);
         give_next(*workers_[index]);
     }
 
-    void try_again(const Case& one, const std::string& why) {
+    void try_again(const Case& one, const std::string& why, bool died) {
         if (++tries_[one.id] < kTries) {
             fmt::print(stderr, "puckloop: case {}: {}: it is run again\n", one.id, why);
             waiting_.push_front(one);
+        } else if (died) {
+            const std::string text = fmt::format("three workers died of it, the last so: {}", why);
+            take_(one.id, to_json(failed_verdict(one.faults.size(), text)));
         } else if (problem_.empty()) {
             problem_ = fmt::format(
                 "case {} failed {} times: {}; the results so far are kept, the same command goes on", one.id,

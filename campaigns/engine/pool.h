@@ -16,8 +16,9 @@ struct PoolOptions {
 };
 
 /// Runs the cases, in their order, on `jobs` processes and hands over each verdict when it comes. A worker
-/// that dies is replaced and its case run again. RunError if a case killed three workers or could not be run,
-/// or on a signal; the verdicts handed over before are valid.
+/// that dies is replaced and its case run again; a case that kills three has the verdict "puckloop failed".
+/// RunError if a case could not be run, three times, or on a signal; the verdicts handed over before are
+/// valid.
 void run_local(const PoolOptions& options, const std::vector<Case>& cases,
                const std::function<void(int id, const nlohmann::json& verdict)>& take);
 

@@ -66,8 +66,10 @@ std::string table_text(const Results& results) {
         std::string row = fmt::format("{},{},{},{},{},{:.6f}", head(result.one), name_of(verdict.outcome),
                                       fmt::join(verdict.fired, "+"), seconds(verdict.first_s),
                                       seconds(verdict.recovery_s), verdict.departure_m);
-        for (const auto& [name, value] : verdict.metrics)
-            row += value ? fmt::format(",{:.9g}", *value) : std::string(",");
+        for (std::size_t i = 0; i < results.campaign.metrics.size(); ++i) {
+            const bool known = i < verdict.metrics.size() && verdict.metrics[i].second;
+            row += known ? fmt::format(",{:.9g}", *verdict.metrics[i].second) : std::string(",");
+        }
         rows[result.one.id] =
             row + fmt::format(",{},{}\n", cell(fmt::format("{}", fmt::join(verdict.symptoms, "; "))),
                               verdict.trace_sha256);

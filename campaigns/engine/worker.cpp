@@ -71,9 +71,7 @@ class Runner {
         try {
             CaseStart start{boots_folder(task_.out)};
             start.snapshot = prefixes_.before(one.seed, first_begin(campaign_, scenario_, one));
-            execute(campaign_, one, folder_, start);
-            const Verdict verdict =
-                judge(campaign_, nominal(one.seed), read_profile(folder_), one.faults.size());
+            const Verdict verdict = run_case(campaign_, one, folder_, start, nominal(one.seed));
             return {{"id", one.id}, {"verdict", to_json(verdict)}};
         } catch (const std::runtime_error& error) {
             return {{"id", one.id}, {"problem", error.what()}};

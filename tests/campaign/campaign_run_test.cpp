@@ -85,6 +85,17 @@ void killed(const Workbench& bench, const std::filesystem::path& file, const std
     CHECK(rows_of(table) == results_in(bench.out("killed")) + 2);  // and two that were pruned
 }
 
+std::size_t failures_in(const std::filesystem::path& out) {
+    try {
+        const auto results = faults::Store(out / "campaign.db", faults::Store::Access::Read).results();
+        return static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const auto& one) {
+            return one.verdict.outcome == faults::Outcome::PuckloopFailed;
+        }));
+    } catch (const std::exception&) {
+        return 0;  // not there yet
+    }
+}
+
 /// They are replaced and their cases run again.
 void workers_die(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
     const auto campaign = bench.start(campaign_words(bench, file, "lost", {"--jobs", "2"}));
@@ -196,6 +207,32 @@ TEST_CASE("a small campaign has every outcome that its faults must have") {
                            Contains("drop on robot0.uart from robot0.linux count=6</th>"));
     replay(bench, table);
     replay_from_report(bench);
+}
+
+TEST_CASE("a case in which the emulator itself crashes is an outcome of its own, and the others are run") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const auto campaign = bench.start(campaign_words(bench, file, "crashing", {"--jobs", "1"}));
+    REQUIRE(wait_for_results(*campaign, bench.out("crashing"), 1));
+    // The runs of cases are the workers' children; one that goes on from a snapshot is run whole after that.
+    while (failures_in(bench.out("crashing")) == 0 && runs(campaign->id()))
+        for (const pid_t worker : campaign->children())
+            for (const pid_t run : children_of(worker))
+                ::kill(run, SIGSEGV);
+    const Ended ended = campaign->wait();
+    INFO(ended.err);
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.err, Contains("puckloop itself failed"));
+    CHECK_THAT(ended.out, Contains("puckloop failed"));
+    const std::string table = table_of(bench, "crashing");
+    INFO(table);
+    CHECK_THAT(table, Contains(",puckloop failed,") && Contains("puckloop itself was ended by SIGSEGV"));
+    // No case is missing, and each row has as many cells.
+    CHECK(rows_of(table) >= 10);
+    CHECK_THAT(text_of(bench.out("crashing") / "report.html"), Contains(">puckloop failed<"));
+    const std::string failed = table.substr(table.find(",puckloop failed,"));
+    CHECK(std::count(failed.begin(), failed.begin() + static_cast<std::ptrdiff_t>(failed.find('\n')), ',') >=
+          7);
 }
 
 TEST_CASE("a campaign's table is the same with more workers, after a kill, lost workers and a full disk") {

@@ -106,6 +106,25 @@ TEST_CASE("each outcome is the one of its definition, wherever the fault strikes
         cut_times(run, kBoard, at, 20);
         CHECK(outcome() == Outcome::NotFired);
     }
+    SECTION("puckloop failed, whatever else: the emulator itself broke off") {
+        run.report["success"] = false;
+        run.report["ended_by"] = "failed";
+        run.report["ended_why"] = "node t0.xbee sent before its earliest output time at 3.570800000000 s";
+        run.report["faults"][0]["fired"] = random.below(2);
+        cut_times(run, kBoard, at, 20);
+        const Verdict verdict = judge(campaign, nominal, run, 1);
+        CHECK(verdict.outcome == Outcome::PuckloopFailed);
+        CHECK(is_finding(verdict.outcome));
+        CHECK(verdict.symptoms.at(0) == "node t#.xbee sent before its earliest output time at # s");
+        CHECK_THAT(verdict.detail, Catch::Contains("3.5708"));
+        CHECK(verdict.trace_sha256.empty());
+    }
+    SECTION("a node that stalls simulated time is a hang, though the run broke off") {
+        run.report["success"] = false;
+        run.report["ended_by"] = "failed";
+        run.report["ended_why"] = "node r.linux: has not let time pass for 30 s of wall clock";
+        CHECK(outcome() == Outcome::Hang);
+    }
     SECTION("crash") {
         run.report["success"] = false;
         run.report["ended_why"] = "node r.linux: /some/where/control: ended by SIGSEGV";
