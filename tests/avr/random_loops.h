@@ -1,7 +1,7 @@
 #pragma once
 // Programs of random waiting loops: they poll counters, flags, pins and variables that interrupts change,
-// call subroutines, switch interrupts off and on, use the stack and scratch variables. Endless, and never the
-// same turn twice.
+// write counters, start and stop a timer, call subroutines, switch interrupts off and on, use the stack and
+// scratch variables. Endless, and never the same turn twice.
 
 #include "base/random.h"
 
@@ -53,10 +53,21 @@ class RandomLoops {
         std::string text = name + ":\n" + line("push r24") + line("in r24, SREG") + line("push r24");
         if (name != "T0O" && below(2))
             text += line(fmt::format("ldi r24, {}", below(250))) + line("sts TCNT2, r24");
+        if (name != "T0O" && below(3) == 0) text += clock_of_timer_2();
         text += line(fmt::format("lds r24, {}", variable)) + line("inc r24") +
                 line(fmt::format("sts {}, r24", variable));
         if (below(2)) text += line("sbi PINB, 5");
         return text + line("pop r24") + line("out SREG, r24") + line("pop r24") + line("reti");
+    }
+    /// Another clock for timer 2; half the time it is stopped for some clocks before.
+    std::string clock_of_timer_2() {
+        std::string text;
+        if (below(2)) {
+            text += line("ldi r24, 0") + line("sts TCCR2B, r24");
+            for (int n = below(4); n > 0; --n)
+                text += line("nop");
+        }
+        return text + line(fmt::format("ldi r24, {}", 1 + below(7))) + line("sts TCCR2B, r24");
     }
     std::string subroutines() {
         std::string text;
@@ -78,7 +89,7 @@ class RandomLoops {
     }
     std::string body() {
         const int d = 16 + below(10), r = 16 + below(10), high = 16 + below(10), cell = 0x210 + below(6);
-        switch (below(24)) {
+        switch (below(26)) {
         case 0:
             return line(fmt::format("in r{}, TCNT0", d));
         case 1:
@@ -126,6 +137,9 @@ class RandomLoops {
                    line(fmt::format("and r{}, r{}", d, r));
         case 22:
             return line(fmt::format("sbis TIFR0, {}", below(3))) + line(fmt::format("com r{}", d));
+        case 23:  // a count that is written and read back, one to three clocks later
+            return line(fmt::format("out TCNT0, r{}", d)) + (below(2) ? line("nop") : "") +
+                   line(below(2) ? fmt::format("in r{}, TCNT0", r) : fmt::format("lds r{}, 0x46", r));
         default:
             return line(fmt::format("{} r24, {}", below(2) ? "adiw" : "sbiw", below(64)));
         }

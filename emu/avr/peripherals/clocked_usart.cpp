@@ -70,7 +70,9 @@ void ClockedUsart::kick() {
     const std::optional<std::uint16_t> word = owner_.take_word();
     if (!word) return;
     load(*word);
-    if (state_.format.mode == Mode::SpiMaster) begin_spi(around_.now + 1);
+    // A clock to the shift register and one more before XCK moves (docs/measured_silicon.md).
+    constexpr Cycle kToFirstClock = 2;
+    if (state_.format.mode == Mode::SpiMaster) begin_spi(around_.now + kToFirstClock);
 }
 
 // The bits of a word in the order in which they go out.

@@ -52,6 +52,7 @@ void Spi::acknowledge(void* owner, int) {
 }
 
 void Spi::complete(std::uint8_t received) {
+    if (state_.shifting) state_.completed_at = around_.now;
     state_.shifting = false;
     state_.edges = 0;
     state_.received = received;
@@ -216,6 +217,7 @@ void Spi::write_data(void* owner, std::uint16_t, std::uint8_t value, std::uint8_
         return;
     }
     self.check_lost();
+    if (self.master() && st.completed_at != 0 && self.around_.now == st.completed_at) value = 0;
     st.shift = st.sent = value;
     if (st.slave) {
         if (st.selected && !(self.control() & kCpha)) self.show_bit();

@@ -56,8 +56,12 @@ std::uint32_t Timer::top() const {
 }
 
 std::uint32_t Timer::divider() const {
+    return division_of(control_b());
+}
+
+std::uint32_t Timer::division_of(std::uint8_t control) const {
     if ((reg(setup_.power) & setup_.power_bit) || prescaler_.stopped()) return 0;
-    return setup_.dividers[field(control_b(), 2, 0)];
+    return setup_.dividers[field(control, 2, 0)];
 }
 
 bool Timer::buffers_wait() const {
@@ -136,13 +140,13 @@ void Timer::pass(std::uint64_t ticks) {
         matched[channel] = leaves(state_.compare[channel], state_.blocked);
         if (matched[channel]) raised |= ocf(static_cast<int>(channel));
     }
-    bool at_bottom = false;
+    bool from_top = false;  // to BOTTOM, not over MAX
     if (wave.dual_slope()) {
         if (leaves(0, false)) raised |= kTov;
     } else {
         const bool ran_over = leaves(max(), false) && (before.count > end || end == max());
-        at_bottom = ran_over || leaves(end, false);
-        if (wave.kind == Kind::Fast ? at_bottom : ran_over) raised |= kTov;
+        from_top = leaves(end, false);
+        if (ran_over || (wave.kind == Kind::Fast && from_top)) raised |= kTov;
     }
     if (wave.top == Top::Capture && leaves(end, state_.blocked)) raised |= kIcf;
     state_.counter.advance(ticks, wave, end, max());
@@ -150,7 +154,7 @@ void Timer::pass(std::uint64_t ticks) {
 
     for (int channel = 0; channel < 2; ++channel)
         if (matched[static_cast<std::size_t>(channel)] && output_mode(channel) != kDisconnected) {
-            const bool hidden = wave.kind == Kind::Fast && at_bottom &&  // a match at the top changes nothing
+            const bool hidden = wave.kind == Kind::Fast && from_top &&  // a match at the top changes nothing
                                 state_.compare[static_cast<std::size_t>(channel)] == end &&
                                 output_mode(channel) != kToggle;
             if (hidden) continue;
@@ -168,7 +172,7 @@ void Timer::pass(std::uint64_t ticks) {
                     set_output(channel, (mode == kClear) == down);
             }
         }
-    if (at_bottom && wave.kind == Kind::Fast) bottom();
+    if (from_top && wave.kind == Kind::Fast) bottom();
     if (update) state_.compare = state_.buffered;
     if (raised & ~flags_.flags()) flags_.raise(raised);
 }
@@ -195,7 +199,8 @@ void Timer::match(int channel) {
     }
 }
 
-// Fast PWM: the other half of the non-inverting and inverting modes.
+// Fast PWM: the other half of the non-inverting and inverting modes, when the counter changes from TOP to
+// BOTTOM. One that was written above TOP runs over MAX without it (docs/measured_silicon.md).
 void Timer::bottom() {
     for (int channel = 0; channel < 2; ++channel) {
         if (output_mode(channel) == kClear) set_output(channel, true);

@@ -7,7 +7,9 @@
 // Deviations
 //  1. A counter above the top of a dual-slope mode turns at once.
 //  2. An external clock edge counts in the clock in which the pin changes, not up to 3.5 clocks later.
-//  3. Of timer 2 with a watch clock: compare matches go on while OCR2x or TCNT2 waits to be updated; TCNT2 is
+//  3. A count that still belongs to the clock selected before (the clock behind a write to TCCRnB) is done at
+//  the write: flags that it raises and pins that it switches are one clock early.
+//  4. Of timer 2 with a watch clock: compare matches go on while OCR2x or TCNT2 waits to be updated; TCNT2 is
 //  right as soon as the CPU wakes; sleeping again within one cycle of the watch clock is safe; a write to a
 //  register whose update flag is set replaces the one that waits.
 
@@ -101,6 +103,8 @@ class Timer {
     std::uint32_t max() const { return setup_.wide ? 0xFFFF : 0xFF; }
     std::uint32_t top() const;
     std::uint32_t divider() const;
+    /// With this in TCCRnB.
+    std::uint32_t division_of(std::uint8_t control) const;
     unsigned output_mode(int channel) const { return field(control_a(), 7 - 2 * channel, 6 - 2 * channel); }
 
     void settle(Cycle now);

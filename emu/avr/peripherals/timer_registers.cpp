@@ -57,6 +57,10 @@ void Timer::set_control(std::uint16_t address, std::uint8_t value, std::uint8_t 
     settle(around_.now);
     constexpr std::uint8_t kForceBits = 0xC0;  // FOCnA, FOCnB of the 8-bit timers' TCCRnB
     const bool force = !setup_.wide && address != setup_.control_a;
+    // Another clock is selected: the next clock still belongs to the old one (docs/measured_silicon.md).
+    if (address != setup_.control_a && !asynchronous() &&
+        division_of(merged(control_b(), value, mask)) != divider())
+        settle(around_.now + 1);
     around_.io.store(address, value, force ? mask & static_cast<std::uint8_t>(~kForceBits) : mask);
     if (!waveform().buffered()) state_.compare = state_.buffered;
     if (!waveform().dual_slope()) state_.counter.down = false;
@@ -89,6 +93,8 @@ void Timer::write_wide(std::uint16_t low_address, std::uint16_t value) {
     if (low_address == setup_.count) {
         state_.counter = {value, false};
         state_.blocked = true;
+        // The write has priority over the count of its clock (docs/measured_silicon.md).
+        if (!asynchronous()) state_.at = around_.now + 1;
     } else if (low_address == setup_.capture) {  // only where it is the top
         if (waveform().top == Waveform::Top::Capture) state_.capture = value;
     } else {

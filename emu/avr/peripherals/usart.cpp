@@ -3,6 +3,7 @@
 #include "protocols/uart_sampling.h"
 
 #include <bit>
+#include <utility>
 
 namespace puckloop::avr {
 
@@ -198,6 +199,10 @@ void Usart::enable_transmitter(bool on) {
     if (on) {
         ports_.override_value(setup_.txd, true, PinUser::Serial);
         ports_.override_direction(setup_.txd, true);
+        // The data sheet has it that what is written to a disabled transmitter is ignored; silicon sends the
+        // last of it once it is enabled (docs/measured_silicon.md).
+        if (const auto word = std::exchange(state_.early, std::nullopt); word && (a() & kUdre))
+            transmit(*word);
     } else if (!state_.shifting && !state_.buffer && !clocked_.busy()) {  // else once what was written is out
         ports_.release_value(setup_.txd, PinUser::Serial);
         ports_.release_direction(setup_.txd);
@@ -206,14 +211,22 @@ void Usart::enable_transmitter(bool on) {
 
 void Usart::write_data(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
     auto& self = *static_cast<Usart*>(owner);
-    if (!(self.a() & kUdre) || !(self.b() & kTxen) || !self.powered()) return;
-    self.state_.buffer = static_cast<std::uint16_t>(value | (self.b() & kTxb8 ? kNinthBit : 0));
-    assign(self.a(), kUdre, false);
-    self.update_requests();
-    if (self.clocked())
-        self.clocked_.kick();
-    else if (!self.state_.shifting)
-        self.begin_frame(self.around_.now + 1);
+    if (!(self.a() & kUdre) || !self.powered()) return;
+    const auto word = static_cast<std::uint16_t>(value | (self.b() & kTxb8 ? kNinthBit : 0));
+    if (self.b() & kTxen)
+        self.transmit(word);
+    else
+        self.state_.early = word;  // in place of an earlier one
+}
+
+void Usart::transmit(std::uint16_t word) {
+    state_.buffer = word;
+    assign(a(), kUdre, false);
+    update_requests();
+    if (clocked())
+        clocked_.kick();
+    else if (!state_.shifting)
+        begin_frame(around_.now + 1);
 }
 
 // ---- receiver

@@ -66,6 +66,7 @@ class Usart final : private ClockedUsart::Owner {
     struct State {
         std::deque<Received> fifo;  ///< two characters, and a third that waits in the shift register
         std::optional<std::uint16_t> buffer;  ///< written, not yet in the shift register
+        std::optional<std::uint16_t> early;   ///< written while the transmitter was off
         bool shifting = false;
         bool stop_begun = false;
         bool transmitter_on = false;
@@ -76,7 +77,8 @@ class Usart final : private ClockedUsart::Owner {
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(fifo, buffer, shifting, stop_begun, transmitter_on, frame_end, frame, sampled, phase);
+            archive(fifo, buffer, early, shifting, stop_begun, transmitter_on, frame_end, frame, sampled,
+                    phase);
         }
     };
 
@@ -101,6 +103,7 @@ class Usart final : private ClockedUsart::Owner {
     void deliver(const chip::UartReceiver::Character& character);
     void enable_receiver(bool on);
     void enable_transmitter(bool on);
+    void transmit(std::uint16_t word);
 
     std::optional<std::uint16_t> take_word() override;
     void frame_out(const cosim::UartFrame& frame) override;
