@@ -1,32 +1,24 @@
 #include "base/error.h"
 
+#include "base/plain_text.h"
+
 #include <fmt/format.h>
 
 namespace puckloop {
 
 namespace {
 
-/// What a user gave may hold anything: control characters would break the line or steer his terminal.
-std::string without_controls(std::string_view text) {
-    std::string plain;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code < 0x20 || code == 0x7F)
-            plain += fmt::format("\\x{:02x}", code);
-        else
-            plain += c;
-    }
-    return plain;
-}
+// Bytes of each part that are shown: whole paths and lists of what is known, no user's megabyte.
+constexpr std::size_t kFile = 1024, kPlace = 256, kProblem = 2048, kExpected = 4096;
 
 std::string one_line(std::string_view file, std::string_view place, std::string_view problem,
                      std::string_view expected) {
     std::string text;
-    if (!file.empty()) text += fmt::format("{}: ", file);
-    if (!place.empty()) text += fmt::format("{}: ", place);
-    text += problem;
-    if (!expected.empty()) text += fmt::format(" (expected {})", expected);
-    return without_controls(text);
+    if (!file.empty()) text += fmt::format("{}: ", plain_text(file, kFile));
+    if (!place.empty()) text += fmt::format("{}: ", plain_text(place, kPlace));
+    text += plain_text(problem, kProblem);
+    if (!expected.empty()) text += fmt::format(" (expected {})", plain_text(expected, kExpected));
+    return text;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "base/log.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
@@ -117,7 +118,8 @@ bool wants(Level level) {
 }
 
 void write(Level level, std::string_view text) {
-    state().logger->log(level_of(level), spdlog::string_view_t(text.data(), text.size()));
+    const std::string line = plain_text(text, kLongestMessage);
+    state().logger->log(level_of(level), spdlog::string_view_t(line.data(), line.size()));
 }
 
 }  // namespace puckloop::log

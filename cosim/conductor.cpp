@@ -1,6 +1,7 @@
 #include "cosim/conductor.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "cosim/conductor_state.h"
 #include "cosim/remote/remote_node.h"
 
@@ -109,7 +110,7 @@ Outcome Conductor::State::run() {
         outcome.stop_time = interrupted_at_;
         current_ = kNobody;
     } catch (const std::exception& error) {
-        fail(outcome, error.what());
+        fail(outcome, reason_of(error));
     }
     outcome.wind_up = wind_up_at_;
     outcome.simulated = end_;

@@ -1,6 +1,7 @@
 // How a run ends: a node's request, a deadlock, a failure; and what is reported of it.
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "cosim/conductor_state.h"
 
 #include <fmt/format.h>
@@ -108,9 +109,9 @@ void Conductor::State::finish(Outcome& outcome) {
             work();
         } catch (const std::exception& error) {
             if (outcome.reason != EndReason::Failed)
-                fail(outcome, error.what());
-            else if (outcome.text != error.what())
-                outcome.warnings.emplace_back(error.what());
+                fail(outcome, reason_of(error));
+            else if (outcome.text != reason_of(error))
+                outcome.warnings.emplace_back(reason_of(error));
         }
     };
     guarded([&] { take_written(); });

@@ -1,6 +1,7 @@
 #include "campaigns/engine/case_run.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "base/text_file.h"
 #include "run/factory/node_factory.h"
 #include "run/plan/overrides.h"
@@ -119,7 +120,7 @@ std::string full_disk(const std::filesystem::path& folder) {
     } catch (const std::bad_alloc&) {
         problem = "no memory is left";
     } catch (const std::exception& error) {
-        problem = error.what();
+        problem = reason_of(error);
         status = kBroke;
     }
     if (problem.empty()) ::_exit(0);

@@ -1,6 +1,7 @@
 #include "cosim/remote/node_server.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "cosim/core/process_name.h"
 #include "cosim/remote/node_processes.h"
 #include "cosim/remote/protocol.h"
@@ -39,7 +40,7 @@ class Server {
         } catch (const InputError& error) {
             return report_error({true, error.what()});
         } catch (const std::exception& error) {
-            return report_error({false, error.what()});
+            return report_error({false, reason_of(error)});
         }
     }
 

@@ -88,6 +88,8 @@ RunSnapshot decode_snapshot(std::span<const std::uint8_t> bytes, const std::stri
         return snapshot;
     } catch (const StateError& error) {
         throw InputError(name, "", error.what(), std::string(kKind.expected) + " of this build");
+    } catch (const std::bad_alloc&) {
+        throw InputError(name, "", "needs more memory than there is", kKind.expected);
     }
 }
 

@@ -54,7 +54,12 @@ std::vector<std::uint8_t> read_sealed(const SealedKind& kind, const std::filesys
     if (size > kind.largest)
         throw InputError(path.string(), "", fmt::format("is too large for a {}", kind.file));
     std::ifstream in(path, std::ios::binary);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+    std::vector<std::uint8_t> bytes;
+    try {
+        bytes.resize(static_cast<std::size_t>(size));
+    } catch (const std::bad_alloc&) {
+        throw InputError(path.string(), "", "needs more memory than there is", std::string(kind.expected));
+    }
     // NOLINTNEXTLINE: a stream reads characters
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (!in && !in.eof()) throw InputError(path.string(), "", "cannot be read");

@@ -1,6 +1,7 @@
 // A node in the conductor's own process: grants are plain calls.
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "cosim/schedule/node_handle.h"
 #include "cosim/schedule/run_ahead.h"
 
@@ -93,7 +94,7 @@ class LocalNode : public NodeHandle {
             throw;
         } catch (const std::exception& error) {
             throw RunError(fmt::format("node {} {} at simulated time {:.9f} s: {}", name_, what,
-                                       to_seconds(reached()), error.what()));
+                                       to_seconds(reached()), reason_of(error)));
         }
     }
 

@@ -9,7 +9,7 @@
 TEST_CASE("an error shows control characters and stays one line") {
     const puckloop::InputError error("a\nb.toml", "line 1", "unknown key 'x\x1b[2J\x7f'", "one\tword");
     CHECK(std::string(error.what()) ==
-          "a\\x0ab.toml: line 1: unknown key 'x\\x1b[2J\\x7f' (expected one\\x09word)");
+          "a\\nb.toml: line 1: unknown key 'x\\x1b[2J\\x7f' (expected one\\tword)");
     CHECK(error.file() == "a\nb.toml");
 }
 

@@ -1,12 +1,15 @@
 // Quantiles, and text files that are written whole.
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "base/quantile.h"
 #include "base/text_file.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <new>
+#include <stdexcept>
 
 using namespace puckloop;
 
@@ -26,4 +29,27 @@ TEST_CASE("a file or folder that cannot be made is named with the reason") {
     CHECK_THROWS_WITH(write_file("/nowhere/file", ""),
                       "/nowhere/file: cannot be written: No such file or directory");
     CHECK_THROWS_AS(make_folder("/dev/null/folder"), RunError);
+}
+
+TEST_CASE("a user's text is shown on one line, without what a terminal obeys, and shortened") {
+    CHECK(plain_text("plain \xc3\xa9 \xe2\x82\xac \xf0\x9f\xa4\x96", 100) ==
+          "plain \xc3\xa9 \xe2\x82\xac \xf0\x9f\xa4\x96");
+    CHECK(plain_text("a\x1b[31mb\nc\td\re\x7f", 100) == "a\\x1b[31mb\\nc\\td\\re\\x7f");
+    CHECK(plain_text("\xc2\x9b \xe2\x80\xae \xff \xc3", 100) == "\\x9b \\u202e \\xff \\xc3");
+    CHECK(plain_text("\xed\xa0\x80\xc0\xaf", 100) == "\\xed\\xa0\\x80\\xc0\\xaf");
+    CHECK(plain_lines("a\nb\x07", 100) == "a\nb\\x07");
+    CHECK(plain_text("a" + std::string(100'000, 'x') + "b", 100) ==
+          "a" + std::string(49, 'x') + " ... (99,902 bytes left out) ... " + std::string(49, 'x') + "b");
+    const InputError error("f\x1b", "line\n1", "bad '" + std::string(1'000'000, '\x1b') + "'", "good");
+    const std::string what = error.what();
+    CHECK(what.size() < 20'000);
+    CHECK(what.find_first_of("\x1b\n") == std::string::npos);
+    CHECK(what.ends_with("' (expected good)"));
+    CHECK(error.file() == "f\x1b");
+}
+
+TEST_CASE("reasons have no library's words") {
+    CHECK(reason_of(std::bad_alloc()) == "not enough memory");
+    CHECK(reason_of(std::length_error("vector::_M_default_append")).find("_M_") == std::string::npos);
+    CHECK(reason_of(RunError("the disk is full")) == "the disk is full");
 }

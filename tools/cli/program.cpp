@@ -4,6 +4,7 @@
 #include "base/version/version.h"
 #include "tools/cli/help_text.h"
 #include "tools/cli/option_sections.h"
+#include "base/plain_text.h"
 #include "tools/cli/usage_error.h"
 
 #include <CLI/CLI.hpp>
@@ -14,9 +15,13 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <new>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -44,6 +49,29 @@ std::vector<std::string> without_help_command(std::vector<std::string> words) {
     return words;
 }
 
+void print_error(std::string_view text) {
+    std::fprintf(stderr, "puckloop: %s\n", plain_lines(text, kLongestMessage).c_str());
+}
+
+/// What nothing catches, as of a thread that gets no memory, has no library's words and no core.
+[[noreturn]] void end_uncaught() {
+    const char* text = "an internal error that nothing catches";
+    std::string reason;
+    if (const std::exception_ptr uncaught = std::current_exception()) {
+        try {
+            std::rethrow_exception(uncaught);
+        } catch (const std::bad_alloc&) {
+            text = "not enough memory";
+        } catch (const std::exception& error) {
+            reason = "internal error: " + reason_of(error);
+            text = reason.c_str();
+        } catch (...) {
+        }
+    }
+    std::fprintf(stderr, "puckloop: %s\n", text);
+    std::_Exit(1);
+}
+
 /// `status`, if all that was printed has been written; else one line, and 1.
 int after_output(int status) {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
@@ -56,6 +84,7 @@ int after_output(int status) {
 int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words,
                 std::span<const Heading> headings) {
     restore_surroundings();
+    std::set_terminate(end_uncaught);
     CLI::App app{"puckloop: real robot firmware, without the robot"};
     app.name("puckloop");
     app.require_subcommand(1);
@@ -82,26 +111,31 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
         if (!app.get_subcommands().empty() || app.remaining().empty()) return after_output(app.exit(error));
         // `puckloop snapshott --help`: help on what there is not
         const CLI::ExtrasError unknown("puckloop", app.remaining());
-        std::fprintf(stderr, "puckloop: %s\n", usage_error(app, unknown).c_str());
+        print_error(usage_error(app, unknown));
         return 2;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return after_output(app.exit(error));  // --version
-        std::fprintf(stderr, "puckloop: %s\n", usage_error(app, error).c_str());
+        print_error(usage_error(app, error));
         return 2;
     } catch (const InputError& error) {
-        std::fprintf(stderr, "puckloop: %s\n", error.what());
+        print_error(error.what());
         return 2;
     } catch (const RunError& error) {
-        std::fprintf(stderr, "puckloop: %s\n", error.what());
+        print_error(error.what());
         return 1;
     } catch (const std::filesystem::filesystem_error& error) {
-        std::fprintf(stderr, "puckloop: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
+        print_error(error.path1().string() + ": " + error.code().message());
         return 1;
-    } catch (const std::system_error& error) {  // fmt::print on a full disk
-        std::fprintf(stderr, "puckloop: standard output: %s\n", error.what());
+    } catch (const std::system_error& error) {
+        const std::string_view text = error.what();
+        const bool output = text.starts_with("cannot write to file");  // fmt::print on a full disk
+        print_error(output ? "standard output: " + std::string(text) : error.code().message());
+        return 1;
+    } catch (const std::bad_alloc& error) {
+        print_error(reason_of(error));
         return 1;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "puckloop: internal error: %s\n", error.what());
+        print_error("internal error: " + reason_of(error));
         return 1;
     }
 }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/plain_text.h"
 #include "cosim/interrupt.h"
 #include "run/driven/driven_run.h"
 #include "run/factory/node_process.h"
@@ -136,7 +137,7 @@ int run(Options& options) {
             options.control);
     } catch (const RunError& error) {  // Ctrl-C before it began, while it waited for a reader of --live
         if (*interrupt.flag() == 0) throw;
-        fmt::print(stderr, "puckloop: {}\n", error.what());
+        fmt::print(stderr, "puckloop: {}\n", plain_lines(error.what(), kLongestMessage));
         return 128 + *interrupt.flag();
     }
     status_line.clear();
@@ -152,7 +153,7 @@ int run(Options& options) {
     else
         fmt::print(said, "{}{}\n", summary(setup, outcome), snapshots_summary(request, outcome));
     const int status = status_of(outcome, *interrupt.flag());
-    if (status != 0) fmt::print(stderr, "puckloop: {}\n", outcome.text);
+    if (status != 0) fmt::print(stderr, "puckloop: {}\n", plain_lines(outcome.text, kLongestMessage));
     if (failed) std::rethrow_exception(failed);
     return status;
 }
