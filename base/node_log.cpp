@@ -1,24 +1,24 @@
 #include "base/node_log.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace puckloop {
 
 namespace {
 [[noreturn]] void fail(const std::string& path) {
-    throw RunError(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
+    throw RunError(fmt::format("cannot write {}: {}", path, why_not_written(errno)));
 }
 }  // namespace
 
 NodeLog::NodeLog(std::string path) : path_(std::move(path)) {
     if (path_.empty()) return;
-    file_.reset(std::fopen(path_.c_str(), "w"));
+    file_.reset(new_file(path_));
     if (!file_) fail(path_);
 }
 

@@ -1,12 +1,17 @@
 #include "bench/bench_instruments.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "base/partial_file.h"
 #include "base/suggest.h"
+#include "base/text_file.h"
 #include "emu/image/line_table.h"
 #include "emu/image/symbol_sizes.h"
 
 #include <fmt/format.h>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
@@ -43,19 +48,20 @@ debug::AddressRange range_of(const std::string& text, const image::Image& image,
 
 /// What is written when the run is over is refused before it begins.
 void check_place(const std::string& path) {
-    std::ofstream out(path, std::ios::binary | std::ios::app);
-    if (!out)
-        throw InputError(path, "", fmt::format("cannot be written: {}", std::strerror(errno)),
+    const int descriptor = open_new_file(path, O_APPEND);
+    if (descriptor < 0)
+        throw InputError(path, "", "cannot be written: " + why_not_written(errno),
                          "a place in a folder that exists and may be written");
+    ::close(descriptor);
 }
 
 void write_file(const std::string& path, const std::string& text) {
-    std::ofstream out(path, std::ios::binary);
-    out << text;
-    if (out.flush()) return;
-    const int reason = errno;
-    remove_partial(path);
-    throw RunError(fmt::format("{}: cannot be written: {}", path, std::strerror(reason != 0 ? reason : EIO)));
+    try {
+        puckloop::write_file(path, text);
+    } catch (const RunError&) {
+        remove_partial(path);
+        throw;
+    }
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "bench/logs.h"
 
+#include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -13,10 +15,7 @@ namespace puckloop::exec {
 namespace {
 
 std::string prepared(const std::string& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error || !std::filesystem::is_directory(folder))
-        throw InputError(folder, "", fmt::format("cannot be created: {}", error.message()), "a folder");
+    claim_folder(folder, ".puckloop-exec", {"uart1.csv", "uart2.csv", "i2c.csv", "pins.csv"});
     return folder + "/";
 }
 
@@ -42,9 +41,8 @@ std::string_view name_of(cosim::I2cPhaseKind kind) {
 
 }  // namespace
 
-CsvFile::CsvFile(const std::string& path, std::string_view header)
-    : path_(path), file_(std::fopen(path.c_str(), "w")) {
-    if (!file_) throw InputError(path_, "", fmt::format("cannot be created: {}", std::strerror(errno)));
+CsvFile::CsvFile(const std::string& path, std::string_view header) : path_(path), file_(new_file(path)) {
+    if (!file_) throw InputError(path_, "", fmt::format("cannot be created: {}", why_not_written(errno)));
     row(header);
 }
 

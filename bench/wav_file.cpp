@@ -1,6 +1,7 @@
 #include "bench/wav_file.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -78,13 +79,13 @@ void WavFile::close() {
     struct Closer {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
-    const std::unique_ptr<std::FILE, Closer> file(std::fopen(path_.c_str(), "wb"));
+    const std::unique_ptr<std::FILE, Closer> file(new_file(path_));
     const auto bytes = static_cast<std::uint32_t>(samples_.size() * kSampleBytes);
     const std::string head = header(rate(), bytes);
     const bool written = file && std::fwrite(head.data(), 1, head.size(), file.get()) == head.size() &&
                          std::fwrite(samples_.data(), 1, bytes, file.get()) == bytes &&
                          std::fflush(file.get()) == 0;
-    if (!written) throw RunError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+    if (!written) throw RunError(fmt::format("{}: cannot be written: {}", path_, why_not_written(errno)));
 }
 
 }  // namespace puckloop::exec

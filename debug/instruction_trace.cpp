@@ -1,6 +1,7 @@
 #include "debug/instruction_trace.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "base/partial_file.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ namespace puckloop::debug {
 InstructionTrace::InstructionTrace(const std::string& file, const DebugChip& chip, const Places& places,
                                    const TraceFilter& filter, SecondsOf seconds_of)
     : file_(file),
-      out_(std::fopen(file.c_str(), "wb")),
+      out_(new_file(file)),
       chip_(chip),
       places_(places),
       filter_(filter),
@@ -23,7 +24,7 @@ InstructionTrace::InstructionTrace(const std::string& file, const DebugChip& chi
       before_(chip.registers().size()),
       after_(chip.registers().size()) {
     if (!out_)
-        throw InputError(file, "", fmt::format("cannot be written: {}", std::strerror(errno)),
+        throw InputError(file, "", "cannot be written: " + why_not_written(errno),
                          "a place in a folder that exists and may be written");
     put("cycle\tpc\tplace\tline\tinstruction\tchanges\n");
 }

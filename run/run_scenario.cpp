@@ -79,7 +79,8 @@ void raise_descriptor_limit() {
     setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// Every name that nodes and the run itself may give a file in the results folder.
+}  // namespace
+
 std::vector<std::string> result_files(const RunSetup& setup) {
     std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
                                    "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
@@ -97,6 +98,8 @@ std::vector<std::string> result_files(const RunSetup& setup) {
     }
     return names;
 }
+
+namespace {
 
 void end_live(LiveTrace& live, cosim::Outcome& outcome) {
     try {

@@ -1,6 +1,7 @@
 #include "traces/recorded_trace.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "base/partial_file.h"
 
 #include <fmt/format.h>
@@ -113,6 +114,8 @@ void RecordedTrace::for_each_checked(const std::function<void(const cosim::Trace
 
 void check_output_file(const std::string& path) {
     if (path == "-") return;
+    if (is_refused_link(path))
+        throw InputError(path, "", why_not_written(ELOOP), "the file itself, or another name");
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const bool there = ::access(path.c_str(), F_OK) == 0;
     if (::access(there ? path.c_str() : folder.empty() ? "." : folder.c_str(), W_OK) != 0)
@@ -130,6 +133,7 @@ void write_output(const std::string& path, const std::function<void(std::ostream
     };
     errno = 0;
     if (path == "-") return write_to(std::cout);
+    make_new_file(path);
     std::ofstream file(path, std::ios::binary);
     try {
         write_to(file);

@@ -1,5 +1,6 @@
 #include "campaigns/engine/campaign.h"
 
+#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/html.h"
@@ -29,6 +30,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// All that a campaign writes.
+const std::vector<std::string> kResults{"campaign.db", "campaign.db-journal", "nominal",
+                                        "boots",       "snapshots",           "slurm",
+                                        "work",        "results.csv",         "report.html"};
+
 /// One campaign at a time in a folder; the lock ends with the process.
 class Lock {
   public:
@@ -37,7 +43,8 @@ class Lock {
         fs::create_directories(out, error);
         if (error)
             throw InputError(out.string(), "", "cannot be made: " + error.message(), "a folder for results");
-        file_ = ::open((out / ".campaign").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        refuse_foreign_results(out, ".campaign", kResults);
+        file_ = ::open((out / ".campaign").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (file_ < 0) throw InputError(out.string(), "", std::strerror(errno), "a folder for results");
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
             throw InputError(out.string(), "", "another campaign writes here", "--out with another folder");
@@ -114,8 +121,7 @@ class Conduct {
 
     /// Only what a campaign writes.
     void drop() {
-        for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "snapshots",
-                                 "slurm", "work", "results.csv", "report.html"})
+        for (const std::string& name : kResults)
             remove(out_ / name);
     }
 
@@ -279,6 +285,11 @@ Verdict replay(const Results& results, int id, const fs::path& folder) {
     if (found == results.results.end())
         throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
                          "a case of results.csv that was run");
+    std::error_code failed;
+    if (fs::exists(fs::symlink_status(folder, failed)) && !fs::is_empty(folder, failed) &&
+        !fs::exists(folder / ".puckloop", failed))
+        throw InputError(folder.string(), "", "holds other things than a run's results, and would be emptied",
+                         "--out with a folder of its own");
     // Whole, not from a snapshot: a second opinion.
     return run_case(results.campaign, found->one, folder, {boots_folder(results.out)},
                     read_profile(nominal_folder(results.out, found->one.seed)));

@@ -1,6 +1,7 @@
 #include "campaigns/engine/table.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "campaigns/engine/findings.h"
 
 #include <fmt/format.h>
@@ -85,6 +86,7 @@ std::string table_text(const Results& results) {
 void write_whole(const fs::path& file, const std::string& text) {
     const fs::path part = file.string() + ".part";
     {
+        make_new_file(part);
         std::ofstream out(part, std::ios::binary);
         out << text;
         out.flush();

@@ -100,7 +100,7 @@ void work(const WorkerTask& task) {
     if (local) ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing outlives the campaign
     int out = ::dup(STDOUT_FILENO);
     if (!task.results.empty())
-        out = ::open(task.results.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+        out = ::open(task.results.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (out < 0)
         throw RunError(fmt::format("{}: cannot be written: {}", task.results.string(), std::strerror(errno)));
     ::fcntl(out, F_SETFD, FD_CLOEXEC);

@@ -1,6 +1,7 @@
 #include "cosim/trace/trace_csv.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,8 @@
 namespace puckloop::cosim {
 
 TraceCsvSink::TraceCsvSink(const std::string& path, Rows rows)
-    : path_(path), rows_(rows), file_(std::fopen(path.c_str(), "we")) {
-    if (!file_) throw RunError(fmt::format("{}: cannot write: {}", path_, std::strerror(errno)));
+    : path_(path), rows_(rows), file_(new_file(path)) {
+    if (!file_) throw RunError(fmt::format("{}: cannot write: {}", path_, why_not_written(errno)));
 }
 
 TraceCsvSink::~TraceCsvSink() {

@@ -1,6 +1,7 @@
 #include "emu/bluetooth/air_node.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "protocols/uart_sampling.h"
 
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ AirNode::AirNode(const AirSpec& spec)
     places_.resize(modules_.size());
     ports_.push_back({"world", cosim::PortKind::Signals});
     if (spec_.csv.empty()) return;
-    log_ = std::fopen(spec_.csv.c_str(), "w");
+    log_ = new_file(spec_.csv);
     if (log_ == nullptr) throw RunError(fmt::format("{}: cannot be written", spec_.csv));
     fmt::print(log_, "time_s,who,what,whom,seconds\n");
 }

@@ -83,7 +83,7 @@ NvmFile::~NvmFile() {
 
 /// The file to be is made now: a place that cannot be written, and a second user, show before the run.
 void NvmFile::take() {
-    descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+    descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kMode);
     if (descriptor_ < 0)
         throw InputError(path_, "", fmt::format("cannot be written: {}", std::strerror(errno)),
                          "a place in a folder that exists and may be written");

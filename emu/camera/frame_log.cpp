@@ -1,6 +1,7 @@
 #include "emu/camera/frame_log.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,7 @@ std::string report_json(const Camera& camera) {
 }
 
 void write_frame_log(const std::string& file, const Camera& camera, const cosim::ClockDomain& clock) {
+    make_new_file(file);
     std::ofstream out(file);
     out << "time_s,frame,format,step,column,row,hash,gain\n";
     for (const TakenFrame& frame : camera.frames()) {
@@ -40,6 +42,7 @@ void write_frame_log(const std::string& file, const Camera& camera, const cosim:
     const Camera::Picture& seen = camera.last_picture();
     if (seen.rgb.empty()) return;
     const std::string picture = std::filesystem::path(file).replace_extension(".ppm").string();
+    make_new_file(picture);
     std::ofstream pixels(picture, std::ios::binary);
     pixels << fmt::format("P6\n{} {}\n255\n", seen.width, seen.height);
     pixels.write(reinterpret_cast<const char*>(seen.rgb.data()),

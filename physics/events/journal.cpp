@@ -1,6 +1,7 @@
 #include "physics/events/journal.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -20,8 +21,8 @@ std::string seconds_text(cosim::Time time) {
 Journal::Journal(const EventPlan& plan)
     : plan_(plan), done_(plan.events.size()), refused_(plan.events.size()) {
     if (plan.journal.empty()) return;
-    file_.reset(std::fopen(plan.journal.c_str(), "w"));
-    if (!file_) throw RunError(fmt::format("cannot write {}: {}", plan.journal, std::strerror(errno)));
+    file_.reset(new_file(plan.journal));
+    if (!file_) throw RunError(fmt::format("cannot write {}: {}", plan.journal, why_not_written(errno)));
     write("# What was done to the world. The same again: puckloop run SCENARIO --events THIS_FILE\n");
     if (!plan.repeats)
         write("# Linux programs ran by the wall clock (--realtime): they will not do the same again. With "

@@ -1,6 +1,7 @@
 #include "physics/render/trajectory_svg.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "physics/render/run_picture.h"
 
 #include <fmt/format.h>
@@ -19,11 +20,11 @@ void write_trajectory_svg(const World& world, const std::filesystem::path& direc
         world.booths.empty() ? std::vector<BoothColours>{} : read_booth_colours(directory / "tams.csv");
     const std::string document = Picture(world, robots, objects, booths).draw();
     const auto file = directory / "trajectory.svg";
-    std::FILE* out = std::fopen(file.c_str(), "w");
+    std::FILE* out = new_file(file);
     const bool written = out != nullptr && std::fputs(document.c_str(), out) >= 0;
     const bool closed = out != nullptr && std::fclose(out) == 0;
     if (!written || !closed)
-        throw RunError(fmt::format("{}: cannot write: {}", file.string(), std::strerror(errno)));
+        throw RunError(fmt::format("{}: cannot write: {}", file.string(), why_not_written(errno)));
 }
 
 }  // namespace puckloop::physics

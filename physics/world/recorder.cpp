@@ -1,6 +1,7 @@
 #include "physics/world/recorder.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -33,14 +34,14 @@ double tidy(double value) {
 }  // namespace
 
 CsvFile::CsvFile(std::string path, const std::string& header)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "w")) {
+    : path_(std::move(path)), file_(new_file(path_)) {
     if (file_ == nullptr) fail();
     row(header);
     flush();
 }
 
 void CsvFile::fail() const {
-    throw RunError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
+    throw RunError(fmt::format("cannot write {}: {}", path_, why_not_written(errno)));
 }
 
 void CsvFile::mark() {

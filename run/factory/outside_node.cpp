@@ -1,6 +1,7 @@
 #include "run/factory/outside_node.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "ends/script_end.h"
 #include "ends/scripts.h"
 #include "ends/text_input.h"
@@ -51,7 +52,7 @@ OutsideNode::OutsideNode(const OutsideSpec& spec)
       quiet_(spec.quiet),
       next_look_(spec.quiet) {
     if (!record_name_.empty()) {
-        record_ = std::fopen(record_name_.c_str(), "wb");
+        record_ = new_file(record_name_);
         if (record_ == nullptr) throw RunError(fmt::format("{}: cannot be written", record_name_));
         std::setvbuf(record_, nullptr, _IONBF, 0);  // a crash of the run loses nothing
     }

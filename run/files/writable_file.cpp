@@ -1,6 +1,7 @@
 #include "run/files/writable_file.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +18,8 @@ void check_writable(const std::filesystem::path& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error))
         throw InputError(path.string(), "", "is a folder", "a file");
+    if (is_refused_link(path))
+        throw InputError(path.string(), "", why_not_written(ELOOP), "the file itself, or another name");
     std::string probe = path.string() + ".XXXXXX";
     const int descriptor = ::mkstemp(probe.data());
     if (descriptor < 0)

@@ -1,6 +1,7 @@
 #include "run/report/fault_results.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_facts.h"
 #include "cosim/trace/trace_row.h"
@@ -122,6 +123,7 @@ ordered_json faults_json(const cosim::Outcome& outcome) {
 }
 
 void write_faults_csv(const cosim::Outcome& outcome, const std::filesystem::path& file) {
+    make_new_file(file);
     std::ofstream out(file);
     out << "fault,kind,place,firing,time_s,from,index,what\n";
     for (const cosim::FaultReport& fault : outcome.faults)

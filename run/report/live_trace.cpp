@@ -1,6 +1,7 @@
 #include "run/report/live_trace.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "cosim/trace/trace_csv.h"
 
 #include <fmt/format.h>
@@ -61,12 +62,11 @@ class LiveTrace::Pipe : public std::streambuf {
             struct stat status {};
             if (stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
                 std::fprintf(stderr, "puckloop: waiting for a reader of %s\n", path.c_str());
-            constexpr mode_t kMode = 0666;
-            descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+            descriptor_ = open_new_file(path);
         }
         if (descriptor_ >= 0) return;
         if (errno == EINTR) throw RunError(fmt::format("interrupted while nobody read {}", path_));
-        throw InputError(path, "--live", fmt::format("cannot be written: {}", std::strerror(errno)),
+        throw InputError(path, "--live", "cannot be written: " + why_not_written(errno),
                          "a file, a named pipe or -");
     }
     ~Pipe() override {

@@ -21,7 +21,7 @@ constexpr std::size_t kShareOfDisk = 4;
 
 ReservedFile::ReservedFile(std::filesystem::path path, std::size_t bytes)
     : path_(std::move(path)), part_(path_.string() + ".part") {
-    descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+    descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, kMode);
     if (descriptor_ < 0) fail();
     // Less than asked is no error: then write() names it, if it matters. A small disk has other files to
     // take.

@@ -1,5 +1,6 @@
 #include "run/report/results_folder.h"
 
+#include "base/claimed_folder.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -32,6 +33,9 @@ ResultsFolder::ResultsFolder(const fs::path& folder, const std::vector<std::stri
     std::error_code failed;
     fs::create_directories(folder, failed);
     if (failed) throw InputError(folder.string(), "", "cannot be made a folder: " + failed.message());
+    std::vector<std::string> written = files;
+    written.insert(written.end(), {"control.json", "events.toml"});
+    refuse_foreign_results(folder, file_.filename().string(), written);
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor_ < 0)
         throw InputError(file_.string(), "", fmt::format("cannot be opened: {}", std::strerror(errno)),

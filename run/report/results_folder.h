@@ -11,8 +11,8 @@ class ResultsFolder {
   public:
     /// Makes the folder, takes its lock and removes what the run before wrote there: that run left the names
     /// of its files in the lock file `.puckloop`, and nothing else is touched. `files` are the names that
-    /// this run may write. InputError if another process holds the lock (it names that process), or if the
-    /// folder or the lock cannot be made.
+    /// this run may write. InputError if another process holds the lock (it names that process), if one of
+    /// `files` is a link or is there without a run's lock file, or if the folder or the lock cannot be made.
     ResultsFolder(const std::filesystem::path& folder, const std::vector<std::string>& files);
     /// Gives the lock back; the list stays for the next run. A run that is killed gives it back as well.
     ~ResultsFolder();

@@ -1,17 +1,43 @@
 // Quantiles, and text files that are written whole.
 
+#include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/new_file.h"
 #include "base/plain_text.h"
 #include "base/quantile.h"
 #include "base/text_file.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 using namespace puckloop;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string content(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+}
+
+struct Folder {
+    fs::path path = tests::scratch_path("puckloop-base-files");
+    Folder() {
+        fs::remove_all(path);
+        fs::create_directories(path);
+    }
+    ~Folder() { fs::remove_all(path); }
+};
+
+}  // namespace
 
 TEST_CASE("quantiles lie between the values, NaN left out") {
     CHECK(median({3, NAN, 1, 2}) == 2);
@@ -29,6 +55,39 @@ TEST_CASE("a file or folder that cannot be made is named with the reason") {
     CHECK_THROWS_WITH(write_file("/nowhere/file", ""),
                       "/nowhere/file: cannot be written: No such file or directory");
     CHECK_THROWS_AS(make_folder("/dev/null/folder"), RunError);
+}
+
+TEST_CASE("a link in the place of a new file is not followed, a device behind one is") {
+    const Folder folder;
+    const fs::path victim = folder.path / "victim.txt", link = folder.path / "link.txt";
+    std::ofstream(victim) << "mine";
+    fs::create_symlink(victim, link);
+    CHECK_THROWS_WITH(write_file(link, "ours"), Catch::Contains("is a link, which is not followed"));
+    CHECK(new_file(link) == nullptr);
+    CHECK(is_refused_link(link));
+    CHECK(content(victim) == "mine");
+    fs::create_symlink(folder.path / "nothing", folder.path / "dangling");
+    CHECK_THROWS_AS(write_file(folder.path / "dangling", "ours"), RunError);
+    CHECK_FALSE(fs::exists(folder.path / "nothing"));
+    fs::create_symlink("/dev/null", folder.path / "null");
+    CHECK_NOTHROW(write_file(folder.path / "null", "ours"));
+    CHECK_NOTHROW(write_file(victim, "ours"));
+    CHECK(content(victim) == "ours");
+}
+
+TEST_CASE("a folder without our mark keeps its files, one with it is written over, links never") {
+    const Folder folder;
+    std::ofstream(folder.path / "report.html") << "mine";
+    CHECK_THROWS_AS(claim_folder(folder.path, ".mark", {"report.html"}), InputError);
+    CHECK_THROWS_AS(claim_folder(folder.path, ".mark", {"report.html"}),
+                    InputError);  // a refusal leaves none
+    CHECK(content(folder.path / "report.html") == "mine");
+    CHECK_NOTHROW(claim_folder(folder.path, ".mark", {"other.html"}));
+    CHECK_NOTHROW(claim_folder(folder.path, ".mark", {"report.html"}));
+    fs::create_symlink(folder.path / "report.html", folder.path / "other.html");
+    CHECK_THROWS_WITH(claim_folder(folder.path, ".mark", {"other.html"}), Catch::Contains("is a link"));
+    CHECK_NOTHROW(claim_folder(folder.path / "new" / "one", ".mark", {"report.html"}));
+    CHECK_THROWS_AS(claim_folder("/dev/null/folder", ".mark", {}), InputError);
 }
 
 TEST_CASE("a user's text is shown on one line, without what a terminal obeys, and shortened") {

@@ -86,3 +86,36 @@ TEST_CASE("a lock that cannot be made is one line and leaves the results") {
     check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {".puckloop", "cannot be opened"});
     CHECK(text_of(bench.out("o") / "report.json") == before);
 }
+
+TEST_CASE("a folder that is not a run's keeps its files, and no link in it is followed") {
+    const Workbench bench;
+    bench.file("victim.txt", "mine\n");
+    fs::create_directories(bench.out("o"));
+    SECTION("a file under a name of the results") {
+        for (const char* name : {"trace.csv", "report.json", "events.toml"}) {
+            const fs::path file = bench.out("o") / name;
+            bench.file(std::string("o/") + name, "mine\n");
+            check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {name, "no mark of puckloop"});
+            CHECK(text_of(file) == "mine\n");
+            CHECK_FALSE(fs::exists(bench.out("o") / ".puckloop"));
+            fs::remove(file);
+        }
+    }
+    SECTION("a link, with our mark or without") {
+        for (const bool marked : {false, true}) {
+            if (marked) REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+            for (const char* name : {"trace.csv", "robot0.pic.log", "report.json.part"}) {
+                fs::remove(bench.out("o") / name);
+                fs::create_symlink(bench.folder() / "victim.txt", bench.out("o") / name);
+                check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {name, "is a link"});
+                CHECK(text_of(bench.folder() / "victim.txt") == "mine\n");
+                fs::remove(bench.out("o") / name);
+            }
+        }
+    }
+    SECTION("other files are in nobody's way") {
+        bench.file("o/notes.txt", "mine\n");
+        CHECK(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+        CHECK(text_of(bench.out("o") / "notes.txt") == "mine\n");
+    }
+}

@@ -2,13 +2,13 @@
 // beside what was published.
 
 #include "tools/commands/bench_bluetooth.h"
+#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/text_file.h"
 #include "emu/bluetooth/exchange.h"
 #include "reproductions/exchange_boards.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
-#include "tools/commands/text_files.h"
 
 #include <fmt/format.h>
 
@@ -79,7 +79,7 @@ void run(const Options& options, int& status) {
     if (options.boards == options.firmware.empty())
         throw InputError("", "bench bluetooth", "emulated boards need a program, and nothing else does",
                          "--boards and --firmware IMAGE together");
-    make_out_folder(options.out);
+    claim_folder(options.out, ".puckloop-bench", {"exchanges.csv", "exchanges.svg", "trials"});
     const ExchangeTimes times = options.boards ? by_boards(options) : by_modules(options);
     const std::string name = options.boards ? options.firmware.filename().string() : "drawn";
     write_file(options.out / "exchanges.svg", exchange_picture(times, name));

@@ -1,15 +1,15 @@
 // `puckloop bench rab`: range and bearing as emulated boards read them, beside the published table.
 
 #include "tools/commands/bench_rab.h"
+#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/text_file.h"
 #include "cosim/interrupt.h"
+#include "physics/ir/published_strengths.h"
 #include "reproductions/rab/measure.h"
 #include "reproductions/rab/picture.h"
-#include "physics/ir/published_strengths.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
-#include "tools/commands/text_files.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -62,7 +62,7 @@ void run(Options& options, int& status) {
     for (const double centimetres : options.distances_cm)
         what.distances.push_back(centimetres / kCentimetres);
     take_parameters(options);
-    make_out_folder(options.out);
+    claim_folder(options.out, ".puckloop-bench", {"rab_errors.csv", "rab_readings.csv", "rab_errors.svg"});
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const cosim::InterruptGuard interrupt;
     const RabMeasured measured = measure_rab(

@@ -1,13 +1,13 @@
 // `puckloop bench sound`: published experiments with sound, repeated on emulated boards.
 
 #include "tools/commands/bench_sound.h"
+#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/text_file.h"
 #include "reproductions/ears_radio.h"
 #include "reproductions/exchange_boards.h"
 #include "reproductions/pictures.h"
 #include "tools/cli/check.h"
-#include "tools/commands/text_files.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -96,7 +96,9 @@ void run(Options& options, int& status) {
     if (others && sound.firmware.empty())
         throw InputError("", "bench sound", "the robots need a program", "--firmware IMAGE");
     if (sound.walker.empty()) sound.walker = sound.firmware;
-    make_out_folder(options.out);
+    claim_folder(options.out, ".puckloop-bench",
+                 {"ears.csv", "ears.svg", "radio.csv", "radio.svg", "radio_times.svg", "distance.csv",
+                  "distance.svg", "calls.csv", "calls.svg", "trials"});
     sound.folder = options.out / "trials";
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const TrialProgress progress = [terminal](int trial, int trials) {

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "replay/dump.h"
 #include "run/factory/node_factory.h"
+#include "run/report/results_folder.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"
 #include "tools/cli/check.h"
@@ -136,7 +137,9 @@ int run(Options& options) {
     const nlohmann::json report = report_of(options.folder);
     check_origin(report, file, setup);
     const NodeDescription& description = find_node(setup, options.node).what;
-    std::filesystem::create_directories(setup.out);
+    if (std::error_code none; std::filesystem::equivalent(setup.out, options.folder, none))
+        throw InputError(setup.out.string(), "--out", "is the recorded run's own folder", "another folder");
+    const ResultsFolder results(setup.out, result_files(setup));
     make_work_folders(setup);
     const auto node = make_node(description);
     if (options.list_registers) {

@@ -1,6 +1,7 @@
 #include "tools/commands/text_files.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -41,19 +42,11 @@ std::string read_text(const std::string& path) {
 }
 
 void write_text(const std::string& path, std::string_view text) {
-    const File file(path == "-" ? stdout : std::fopen(path.c_str(), "wb"));
-    if (!file) throw InputError(path, "", std::string("cannot be written: ") + std::strerror(errno));
+    const File file(path == "-" ? stdout : new_file(path));
+    if (!file) throw InputError(path, "", "cannot be written: " + why_not_written(errno));
     const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
     if (!written || std::fflush(file.get()) != 0)
         throw RunError(path + ": cannot be written: " + std::strerror(errno));
-}
-
-void make_out_folder(const std::filesystem::path& folder) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed)
-        throw InputError(folder.string(), "--out", "cannot be made: " + failed.message(),
-                         "a folder for results");
 }
 
 }  // namespace puckloop::tools

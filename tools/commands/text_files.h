@@ -1,7 +1,6 @@
 #pragma once
-// Whole text files for commands, "-" meaning standard input or output, and the folder for results.
+// Whole text files for commands, "-" meaning standard input or output.
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -12,8 +11,5 @@ std::string read_text(const std::string& path);
 
 /// Throws InputError when the file cannot be created, RunError when the disk is full.
 void write_text(const std::string& path, std::string_view text);
-
-/// The folder of --out, with those above it. Throws InputError when it cannot be made.
-void make_out_folder(const std::filesystem::path& folder);
 
 }  // namespace puckloop::tools

@@ -1,12 +1,16 @@
 // `puckloop upload`: a program into the flash of an e-puck's main board by its resident boot loader.
 
 #include "base/error.h"
+#include "base/new_file.h"
+#include "base/text_file.h"
 #include "bench/upload/serial_upload.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 
 #include <fmt/format.h>
+
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,14 +43,12 @@ void write_script(const std::vector<BootPacket>& packets, const std::string& fil
         add(packet);
     add(boot_end());
     errno = 0;
-    std::ofstream stream(file);
-    if (!stream)
-        throw InputError(file, "--script",
-                         fmt::format("cannot be written: {}", std::strerror(errno != 0 ? errno : EIO)),
+    const int descriptor = open_new_file(file, O_APPEND);
+    if (descriptor < 0)
+        throw InputError(file, "--script", "cannot be written: " + why_not_written(errno),
                          "a place in a folder that exists and may be written");
-    stream << lines;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("{}: cannot be written to the end", file));
+    ::close(descriptor);
+    write_file(file, lines);
     fmt::print("{} rows, {:.2f} s to {:.2f} s: {}\n", packets.size(), at, time, file);
 }
 

@@ -1,6 +1,7 @@
 #include "tools/gap/folders.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -62,6 +63,11 @@ void refuse_experiment_in(const fs::path& folder) {
     const fs::path known = folder / "experiment.toml";
     if (fs::exists(known, failed))
         throw InputError(known.string(), "", "is there already and would be written over", "a new folder");
+    static const std::regex kRun(R"(run[0-9]+\.csv)");
+    for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+        if (std::regex_match(at->path().filename().string(), kRun))
+            throw InputError(at->path().string(), "", "is there already and would be written over",
+                             "a new folder");
 }
 
 void refuse_foreign_files(const fs::path& folder) {
@@ -81,6 +87,7 @@ fs::path beside(const fs::path& file) {
 }
 
 void write_beside(const fs::path& file, const std::string& text) {
+    make_new_file(beside(file));
     std::ofstream stream(beside(file), std::ios::binary);
     stream << text;
     stream.close();

@@ -1,5 +1,6 @@
 // puckloop gap: simulation against measured data.
 
+#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "emu/image/image.h"
@@ -144,6 +145,8 @@ void analyse_folder(const Request& request) {
         for (const auto& file : {overlay, json, page, checks})
             if (std::filesystem::is_directory(file))
                 throw InputError(file.string(), "", "is a folder", "a file, or nothing yet");
+        claim_folder(request.out, ".puckloop-gap",
+                     {"overlay.toml", "gap.json", "report.html", "predictive.svg"});
     }
     const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
     gap::Options options{request.seed, threads, progress_line(gap::expected_seconds(experiment, threads))};

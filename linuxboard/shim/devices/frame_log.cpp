@@ -1,6 +1,7 @@
 #include "linuxboard/shim/devices/frame_log.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 
 #include <fmt/format.h>
 
@@ -35,6 +36,8 @@ FrameLog::FrameLog(const std::string& csv, std::string folder, std::uint32_t eve
     : folder_(std::move(folder)), every_(every) {
     if (!folder_.empty()) remove_pictures(folder_);
     if (csv.empty()) return;
+    if (is_refused_link(csv))
+        throw InputError(csv, "", why_not_written(ELOOP), "a folder of its own for the results");
     csv_.open(csv);
     if (!csv_) throw InputError(csv, "", std::strerror(errno), "a file that can be written");
     csv_ << "t_s,frame,sequence,width,height,format,hash\n";
@@ -58,6 +61,7 @@ void FrameLog::save(const Frame& frame, std::span<const std::uint8_t> rgb) const
     std::error_code ignored;
     std::filesystem::create_directories(folder_, ignored);
     const std::string file = fmt::format("{}/{:08d}.ppm", folder_, frame.number);
+    make_new_file(file);
     std::ofstream out(file, std::ios::binary);
     out << fmt::format("P6\n{} {}\n255\n", frame.size.width, frame.size.height);
     out.write(reinterpret_cast<const char*>(rgb.data()), static_cast<std::streamsize>(rgb.size()));

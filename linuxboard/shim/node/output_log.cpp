@@ -27,7 +27,7 @@ off_t size_of(int descriptor) {
 
 OutputLog::OutputLog(const std::string& file) {
     if (file.empty()) return;
-    descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
+    descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor_ < 0) throw InputError(file, "", std::strerror(errno), "a log file that can be written");
 }
 
