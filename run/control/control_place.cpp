@@ -1,11 +1,13 @@
 #include "run/control/control_place.h"
 
 #include "base/error.h"
+#include "base/text_file.h"
 #include "run/control/control_socket.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <signal.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -15,6 +17,8 @@
 #include <cstring>
 #include <fstream>
 #include <random>
+#include <regex>
+#include <vector>
 
 namespace puckloop::tools {
 
@@ -49,8 +53,40 @@ void remove_left_over(const fs::path& note) {
     fs::remove(fs::path(socket).parent_path(), ignored);
 }
 
+bool is_dead(pid_t process) {
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+/// Private folders of runs that were killed, wherever their results are: this user's, of a process that is
+/// gone, with nothing in them but a socket that nobody listens to.
+void remove_left_over_folders(const fs::path& place) {
+    static const std::regex kName("puckloop-([0-9]{1,9})-[0-9a-f]{16}");
+    std::error_code failed;
+    std::vector<fs::path> left;
+    for (fs::directory_iterator at(place, failed), end; !failed && at != end; at.increment(failed)) {
+        std::smatch found;
+        const std::string name = at->path().filename().string();
+        if (std::regex_match(name, found, kName) && is_dead(std::stoi(found[1]))) left.push_back(at->path());
+    }
+    for (const fs::path& folder : left) {
+        struct stat status {};
+        if (::lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != ::geteuid())
+            continue;
+        const fs::path socket = folder / kSocket;
+        if (fs::exists(fs::symlink_status(socket, failed)) && !is_left_over(socket.string())) continue;
+        fs::remove(socket, failed);
+        fs::remove(folder, failed);  // not if there is anything else in it
+    }
+}
+
+/// Where new_control_path() makes folders.
+std::vector<fs::path> places() {
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    return {fs::path(runtime != nullptr ? runtime : ""), fs::path("/tmp")};
+}
+
 void write_note(const fs::path& note, const nlohmann::json& content) {
-    std::ofstream(note) << content.dump() << '\n';
+    write_file(note, content.dump() + "\n");
 }
 
 }  // namespace
@@ -59,9 +95,8 @@ std::string new_control_path() {
     std::random_device source;
     const std::string name =
         fmt::format("{}{}-{:08x}{:08x}/{}", kFolder, ::getpid(), source(), source(), kSocket);
-    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
     std::error_code ignored;
-    for (const fs::path& folder : {fs::path(runtime != nullptr ? runtime : ""), fs::path("/tmp")}) {
+    for (const fs::path& folder : places()) {
         const std::string path = (folder / name).string();
         if (folder.is_absolute() && fs::is_directory(folder, ignored) &&
             ::access(folder.c_str(), W_OK) == 0 && path.size() < sizeof(sockaddr_un::sun_path))
@@ -78,6 +113,8 @@ ControlPlace::ControlPlace(std::string socket, const fs::path& results, bool dri
     : socket_(std::move(socket)), note_(results / kNote) {
     std::error_code ignored;
     remove_left_over(note_);
+    for (const fs::path& place : places())
+        if (place.is_absolute()) remove_left_over_folders(place);
     fs::remove(note_, ignored);
     if (socket_.empty()) return;
     const std::string folder = fs::path(socket_).parent_path().string();

@@ -20,7 +20,8 @@ std::string client_socket_beside(const std::string& socket);
 class ControlPlace {
   public:
     /// `socket` empty: the run takes no commands. control.json of an earlier run is removed, and if that run
-    /// was killed, its socket as well. Throws RunError.
+    /// was killed, its socket as well; so are private folders that killed runs of this user left elsewhere.
+    /// Throws RunError.
     /// `driven`: control.json names the client's socket too.
     ControlPlace(std::string socket, const std::filesystem::path& results, bool driven = false);
     ~ControlPlace();

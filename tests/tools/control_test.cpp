@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -192,4 +193,25 @@ TEST_CASE("the socket of a killed run goes with the next run into its folder") {
         const ControlPlace next("", killed.results);
         CHECK(fs::exists(precious));
     }
+}
+
+TEST_CASE("private folders of runs that were killed are removed by the next run, whatever its folder") {
+    const Run run;
+    // A process that is surely gone.
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(0);
+    REQUIRE(::waitpid(child, nullptr, 0) == child);
+    const fs::path place = fs::path(new_control_path()).parent_path().parent_path();
+    const auto left = place / ("puckloop-" + std::to_string(child) + "-0123456789abcdef");
+    const auto used = place / ("puckloop-" + std::to_string(child) + "-fedcba9876543210");
+    const auto alive = place / ("puckloop-" + std::to_string(::getpid()) + "-0123456789abcdef");
+    for (const fs::path& folder : {left, used, alive})
+        fs::create_directories(folder);
+    std::ofstream(used / "notes.txt") << "mine";
+    { const ControlPlace next("", run.results); }
+    CHECK_FALSE(fs::exists(left));
+    CHECK(fs::exists(used / "notes.txt"));
+    CHECK(fs::exists(alive));
+    for (const fs::path& folder : {left, used, alive})
+        fs::remove_all(folder);
 }
