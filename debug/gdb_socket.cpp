@@ -32,7 +32,7 @@ std::uint16_t port_of(std::string_view option, std::string_view where) {
         if (error == std::errc{} && end == last) return port;
     }
     throw InputError("", option, fmt::format("'{}' is no address to listen on", where),
-                     ":PORT (on 127.0.0.1; 0 for a free one) or unix:PATH");
+                     "unix:PATH, or :PORT (on 127.0.0.1; 0 for a free one)");
 }
 
 }  // namespace
@@ -81,6 +81,8 @@ GdbSocket::GdbSocket(std::string_view option, const std::string& where) {
     socklen_t size = sizeof name;
     check(::getsockname(listener_, reinterpret_cast<sockaddr*>(&name), &size) == 0);
     address_ = fmt::format("127.0.0.1:{}", ntohs(name.sin_port));
+    fmt::print(stderr, "{}: {} is open to every user of this machine; unix:PATH is this user's alone\n",
+               option, address_);
 }
 
 GdbSocket::~GdbSocket() {

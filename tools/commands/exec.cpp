@@ -128,7 +128,8 @@ void describe(Command& app, Arguments& a) {
         ->allow_extra_args(false);
     app.add_option(
            "--gdb", o.gdb,
-           "wait for GDB at :PORT (on 127.0.0.1; 0: a free one, named on standard error) or unix:PATH, "
+           "wait for GDB at unix:PATH (this user's alone) or :PORT (on 127.0.0.1, open to every user of this "
+           "machine; 0: a free one, named on standard error), "
            "with the chip at its first instruction; without --seconds the run has no end "
            "(docs/debugging.md)")
         ->type_name("PLACE");

@@ -258,11 +258,11 @@ void declare_run(Command& app, int& status) {
         ->check(seconds_between(kShortestStall, kLongestRun))
         ->type_name("TIME");
     command
-        ->add_option(
-            "--gdb", request.gdb,
-            "NODE=PLACE: the run waits for GDB at PLACE, :PORT (on 127.0.0.1) or unix:PATH, and stands "
-            "still whenever that stops the board NODE (robot0.pic, tam0.avr, ...); repeatable "
-            "(docs/debugging.md)")
+        ->add_option("--gdb", request.gdb,
+                     "NODE=PLACE: the run waits for GDB at PLACE, unix:PATH (this user's alone) or :PORT (on "
+                     "127.0.0.1: open to every user of this machine), and stands "
+                     "still whenever that stops the board NODE (robot0.pic, tam0.avr, ...); repeatable "
+                     "(docs/debugging.md)")
         ->allow_extra_args(false)
         ->type_name("NODE=PLACE");
     command
