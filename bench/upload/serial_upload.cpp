@@ -25,16 +25,15 @@ constexpr Milliseconds kAskEvery{100}, kAskAgainEvery{500}, kRowPatience{3000};
 /// Longer than answers take, and far less than the second for which the boot loader waits for an octet.
 constexpr Milliseconds kProbePatience{300};
 constexpr int kTries = 5, kPasses = 8;
-constexpr double kBaud = 115200.0;
 
 class Port {
   public:
-    explicit Port(const std::string& name)
+    Port(const std::string& name, double baud)
         : name_(name), file_(::open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)) {
         if (file_ < 0)
             throw InputError(name, "", fmt::format("cannot be opened: {}", std::strerror(errno)),
                              "a serial port, such as a run's pty");
-        if (!exec::set_raw_terminal(file_, kBaud)) {
+        if (!exec::set_raw_terminal(file_, baud)) {
             ::close(file_);
             throw InputError(name, "", "no serial port", "such as a run's pty");
         }
@@ -197,9 +196,9 @@ void Session::send(const BootPacket& row) {
 
 }  // namespace
 
-void upload(const std::string& name, const std::vector<BootPacket>& packets, double patience,
+void upload(const std::string& name, const std::vector<BootPacket>& packets, double baud, double patience,
             const std::function<void(double)>& progress) {
-    Port port(name);
+    Port port(name, baud);
     Session session(port, patience);
     session.start();
     for (std::size_t i = 0; i < packets.size(); ++i) {

@@ -128,7 +128,7 @@ bool no_ptys() {
 
 void check_upload(Robot& robot, const std::vector<BootPacket>& packets) {
     double share = 0.0;
-    upload(robot.name(), packets, 30.0, [&](double now) { share = now; });
+    upload(robot.name(), packets, 115200, 30.0, [&](double now) { share = now; });
     for (int i = 0; i < 1000 && !robot.ended; ++i)
         std::this_thread::sleep_for(milliseconds(5));
     CHECK(robot.ended);

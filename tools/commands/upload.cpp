@@ -24,7 +24,7 @@ namespace {
 
 struct Options {
     std::string image, port, script;
-    double at = 1.0, wait = 30.0;
+    double at = 1.0, wait = 30.0, baud = 115200;
 };
 
 /// Rows are sent at times of their own, late enough for the flash: nobody reads the answers.
@@ -60,7 +60,7 @@ void run(const Options& options, int& status) {
         write_script(packets, options.script, options.at);
     } else {
         const bool terminal = ::isatty(STDERR_FILENO) == 1;
-        upload(options.port, packets, options.wait, [terminal](double share) {
+        upload(options.port, packets, options.baud, options.wait, [terminal](double share) {
             if (terminal) fmt::print(stderr, "\r{:3.0f} %", 100 * share);
         });
         if (terminal) fmt::print(stderr, "\r     \r");
@@ -84,6 +84,12 @@ void declare_upload(Command& app, int& status) {
                      "s to ask for the boot loader: it listens for a second after a reset")
         ->check(number_between(0.1, 3600))
         ->type_name("S");
+    command
+        ->add_option("--baud", options->baud,
+                     "bits/s of the port (default 115200, as of the original boot loader and of a Bluetooth "
+                     "serial port)")
+        ->check(number_between(1, 4e6))
+        ->type_name("RATE");
     command
         ->add_option("--script", options->script,
                      "writes what to send as a script for uart1 or a Bluetooth computer instead")
