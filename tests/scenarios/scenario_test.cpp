@@ -40,6 +40,13 @@ TEST_CASE("hello.toml is what the README promises") {
     CHECK(hello.world.robots[0].heading == Approx(std::numbers::pi / 6));
 }
 
+TEST_CASE("programs of the shipped rooms for calibration keep their files apart") {
+    const Scenario room = read_scenario(std::string(PUCKLOOP_SCENARIOS) + "/calibrate_rab.toml");
+    REQUIRE(room.robots.size() == 2);
+    for (const RobotBoards& robot : room.robots)
+        CHECK(robot.linux_board->folder == robot.name);
+}
+
 TEST_CASE("errata of a main board's chip are named, and others refused") {
     const TemporaryFile file(kArena + kRobot + "errata = [\"daw.b\", \"pwm-zero-duty\"]\n");
     CHECK(read_scenario(file.path()).robots[0].pic.errata ==

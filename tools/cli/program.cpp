@@ -1,10 +1,10 @@
 #include "tools/cli/program.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "base/version/version.h"
 #include "tools/cli/help_text.h"
 #include "tools/cli/option_sections.h"
-#include "base/plain_text.h"
 #include "tools/cli/usage_error.h"
 
 #include <CLI/CLI.hpp>
