@@ -19,7 +19,7 @@ namespace {
 
 using cosim::Time;
 
-const std::string kUnknownByte = "bx ";
+const std::string kNoByte = "s ";
 
 /// Short identifiers of characters with which neither a time nor a value nor a keyword begins: readers that
 /// do not know strings skip them word by word.
@@ -45,6 +45,11 @@ std::string binary(std::uint64_t value) {
     return fmt::format("b{:b} ", value);
 }
 
+/// As text: at a vector of several bits libsigrok 0.5.2 gives up the rest of the file.
+std::string byte_text(unsigned value) {
+    return fmt::format("s{:02x} ", value);
+}
+
 struct Variable {
     std::string scope, from, name, type;
     unsigned width = 1;
@@ -60,9 +65,9 @@ class Values {
     void add(const cosim::TraceRow& row) {
         if (keeps_from_arriving(row.fault)) return;
         if (const auto* frame = std::get_if<cosim::UartFrame>(&row.payload)) {
-            const std::size_t byte = variable(row, "byte", "wire", kByteWidth, kUnknownByte);
-            emit_(frame->start, byte, binary(frame->is_break ? 0U : frame->data));
-            emit_(protocols::frame_end(*frame), byte, kUnknownByte);
+            const std::size_t byte = variable(row, "byte", "string", 1, kNoByte);
+            emit_(frame->start, byte, byte_text(frame->is_break ? 0U : frame->data));
+            emit_(protocols::frame_end(*frame), byte, kNoByte);
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row.payload)) {
             add_phase(row, *phase);
         } else if (const auto* signal = std::get_if<cosim::Signal>(&row.payload)) {
@@ -90,15 +95,13 @@ class Values {
     const std::vector<Variable>& variables() const { return variables_; }
 
   private:
-    static constexpr unsigned kByteWidth = 9;  // nine-bit frames fit
-
     void add_phase(const cosim::TraceRow& row, const cosim::I2cPhase& phase) {
         static constexpr std::string_view kNames[] = {"start", "write", "read", "stop",
                                                       "ack",   "data",  "lost"};
         std::string_view name = kNames[static_cast<std::size_t>(phase.kind)];
         if (phase.kind == cosim::I2cPhaseKind::Acknowledge && phase.ack == 0) name = "nack";
         emit_(row.time, variable(row, "phase", "string", 1, "s "), fmt::format("s{} ", name));
-        emit_(row.time, variable(row, "byte", "wire", kByteWidth, kUnknownByte), binary(phase.byte));
+        emit_(row.time, variable(row, "byte", "string", 1, kNoByte), byte_text(phase.byte));
     }
 
     std::size_t variable(const cosim::TraceRow& row, const std::string& name, const std::string& type,
@@ -210,8 +213,10 @@ void write_vcd(const RecordedTrace& trace, std::ostream& out, VcdValues* others,
     lines.end();
     const LineSurvey surveyed{lines.lines(), lines.how_late(), lines.last(), lines.shortest_bit()};
     std::vector<Variable> variables;
+    // sigrok names wires without their scopes: the names of the sigrok session are unique.
     for (const Line& line : surveyed.lines)
-        variables.push_back({line.scope, line.from, line.name, "wire", 1, line.rests_high() ? "1" : "0"});
+        variables.push_back(
+            {line.scope, line.from, line.full_name(), "wire", 1, line.rests_high() ? "1" : "0"});
     const std::size_t values_from = variables.size();
     variables.insert(variables.end(), found.variables().begin(), found.variables().end());
     const std::size_t others_from = variables.size();

@@ -80,6 +80,25 @@ TEST_CASE("a value change dump is as coarse as its shortest bit allows, or as is
     CHECK_THAT(vcd, Catch::Contains("\n#10000\n") && Catch::Contains("\n#10173\n"));
 }
 
+TEST_CASE("sigrok reads a value change dump to its end, in the time that it reads the lines") {
+    if (!installed("sigrok-cli")) return;
+    std::vector<TraceRow> rows;
+    for (int i = 0; i < 20; ++i) {
+        rows.push_back(uart_row("wire", "left", {(1 + 25 * i) * kMillisecond, kSecond / 115200, 0x41}));
+        rows.push_back(uart_row("wire", "right", {(2 + 25 * i) * kMillisecond, kSecond / 115200, 0x7e}));
+    }
+    const std::string trace = write_trace("sigrok.csv", rows);
+    REQUIRE(tests::puckloop(fmt::format("trace export {0} -o {0}.vcd", trace)).status == 0);
+    for (const auto& [sender, byte] : {std::pair{"left", "41"}, std::pair{"right", "7E"}}) {
+        INFO(sender);
+        const Called read = shell(fmt::format("timeout 60 sigrok-cli -I vcd -i {}.vcd -P uart:rx=wire/{}:"
+                                              "baudrate=115200 -A uart=rx-data 2>/dev/null",
+                                              trace, sender));
+        CHECK(read.status == 0);
+        CHECK(lines_of(read.out) == std::vector<std::string>(20, fmt::format("uart-1: {}", byte)));
+    }
+}
+
 TEST_CASE("packets are in the order of their times, however late their rows are") {
     if (!installed("tshark")) return;
     // A burst that lasts 20 ms while frames of another line come and go, and a frame that is known late.
