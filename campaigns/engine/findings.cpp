@@ -35,7 +35,7 @@ bool smaller(const CaseResult& a, const CaseResult& b) {
 }  // namespace
 
 std::vector<Finding> findings_of(const std::vector<CaseResult>& results) {
-    std::map<std::tuple<Outcome, std::size_t, std::string, std::string>, Finding> groups;
+    std::map<std::tuple<Outcome, std::string, std::size_t, std::string, std::string>, Finding> groups;
     for (const CaseResult& result : results) {
         if (!is_finding(result.verdict.outcome)) continue;
         std::vector<std::string> kinds;
@@ -46,8 +46,10 @@ std::vector<Finding> findings_of(const std::vector<CaseResult>& results) {
         for (const std::string& kind : kinds)
             faults += (faults.empty() ? "" : " + ") + kind;
         const std::string symptoms = signature(result.verdict);
-        Finding& finding = groups[{result.verdict.outcome, kinds.size(), faults, symptoms}];
+        Finding& finding =
+            groups[{result.verdict.outcome, result.verdict.cause, kinds.size(), faults, symptoms}];
         finding.outcome = result.verdict.outcome;
+        finding.cause = result.verdict.cause;
         finding.faults = faults;
         finding.symptoms = symptoms;
         finding.cases.push_back(&result);
@@ -57,6 +59,17 @@ std::vector<Finding> findings_of(const std::vector<CaseResult>& results) {
     for (auto& [key, finding] : groups)
         list.push_back(std::move(finding));
     return list;
+}
+
+std::vector<Cause> causes_of(const std::vector<Finding>& findings) {
+    std::vector<Cause> causes;
+    for (const Finding& finding : findings) {
+        if (causes.empty() || causes.back().outcome != finding.outcome || causes.back().what != finding.cause)
+            causes.push_back({finding.outcome, finding.cause, {}, 0});
+        causes.back().findings.push_back(&finding);
+        causes.back().cases += finding.cases.size();
+    }
+    return causes;
 }
 
 }  // namespace puckloop::faults

@@ -138,14 +138,19 @@ std::string findings_html(const Results& results) {
     html +=
         "<table><tr><th>outcome</th><th>faults</th><th>what was seen</th><th>cases</th><th>smallest set that "
         "causes it</th><th>replay</th></tr>\n";
-    for (const Finding& finding : findings) {
-        const CaseResult& smallest = *finding.smallest;
-        html += fmt::format(
-            "<tr><td class={}>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td>"
-            "<td><code class=copy>{}</code></td></tr>\n",
-            look_of(finding.outcome).name, name_of(finding.outcome), escaped(finding.faults),
-            escaped(smallest.verdict.detail), finding.cases.size(), escaped(in_one_line(smallest.one.faults)),
-            escaped(replay_command_anywhere(results, smallest.one.id)));
+    for (const Cause& cause : causes_of(findings)) {
+        html += fmt::format("<tr><th colspan=6 scope=rowgroup>{}: {} findings, {} cases</th></tr>\n",
+                            escaped(cause.what), cause.findings.size(), cause.cases);
+        for (const Finding* finding : cause.findings) {
+            const CaseResult& smallest = *finding->smallest;
+            html += fmt::format(
+                "<tr><td class={}>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td>"
+                "<td><code class=copy>{}</code></td></tr>\n",
+                look_of(finding->outcome).name, name_of(finding->outcome), escaped(finding->faults),
+                escaped(smallest.verdict.detail), finding->cases.size(),
+                escaped(in_one_line(smallest.one.faults)),
+                escaped(replay_command_anywhere(results, smallest.one.id)));
+        }
     }
     return html + "</table>\n";
 }

@@ -43,6 +43,20 @@ std::size_t resets_of(const json& node) {
     return node.contains("resets") && node.at("resets").is_array() ? node.at("resets").size() : 0;
 }
 
+/// For how long the wheels of a robot turned after the last byte to its main board, s; below 0 if they stood
+/// before it, or if nobody sent it anything.
+double blind_drive(const Profile& run, const std::string& robot, double end) {
+    double commanded = -1;
+    for (const auto& [name, sender] : run.senders)
+        if (name.starts_with(robot + ".") && name.find(".i2c") == std::string::npos &&
+            !name.ends_with(" from " + robot + ".pic"))
+            commanded = std::max(commanded, last_before(sender, end));
+    const auto turns = run.turns.find(robot);
+    if (commanded < 0 || turns == run.turns.end()) return -1;
+    const auto after = std::upper_bound(turns->second.begin(), turns->second.end(), end);
+    return after == turns->second.begin() ? -1 : *(after - 1) - commanded;
+}
+
 /// The faults' evidence in the report: those of the case are the last ones.
 void read_fired(const Profile& run, std::size_t faults, Verdict& verdict) {
     const json& all = run.report.at("faults");
@@ -76,6 +90,11 @@ struct Judge {
     const Profile& run;
     Verdict& verdict;
 
+    /// What went wrong first is the cause of what follows from it; the first in the order of outcomes counts.
+    void blame(const std::string& cause) {
+        if (verdict.cause.empty()) verdict.cause = cause;
+    }
+
     void note(std::string symptom, const std::string& when = {}) {
         verdict.detail += fmt::format("{}{}{}", verdict.detail.empty() ? "" : "; ", symptom, when);
         verdict.symptoms.push_back(std::move(symptom));
@@ -103,6 +122,7 @@ struct Judge {
         // A program that computes for ever without a call stalls simulated time: no crash.
         if (is_stall(why) || why.find("never fired") != std::string::npos) return false;
         note(shape_of(without_folders(why)), fmt::format(" ({})", why));
+        blame(verdict.symptoms.back());
         return true;
     }
 
@@ -114,6 +134,7 @@ struct Judge {
             const std::size_t now = resets_of(node);
             if (now < usual + static_cast<std::size_t>(campaign.limits.resets)) continue;
             note(name + " is reset again and again", fmt::format(" ({} times)", now));
+            blame(verdict.symptoms.back());
             loop = true;
         }
         return loop;
@@ -125,8 +146,11 @@ struct Judge {
         // All programs ended as they do when their work is done, and it was not.
         if (succeeded(run.report) && end < end_of(nominal) - campaign.limits.silence) {
             note("the run ends early", fmt::format(" (at {:.6f} s)", end));
+            blame(verdict.symptoms.back());
             return true;
         }
+        std::optional<double> earliest;
+        std::string first;
         for (const auto& [name, usual] : nominal.senders) {
             const double limit = std::max(campaign.limits.silence, 1.5 * longest_pause(usual, end));
             if (last_before(usual, end) < end - limit) continue;
@@ -136,15 +160,32 @@ struct Judge {
             note(name + " falls silent", last < 0 ? std::string(" (from the begin on)")
                                                   : fmt::format(" (last frame at {:.6f} s)", last));
             silent = true;
+            if (earliest && last >= *earliest) continue;
+            earliest = last;
+            first = verdict.symptoms.back();
         }
         if (!run.report.value("success", false) && nominal.report.value("success", false)) {
             const std::string why = run.report.value("ended_why", "");
             if (is_stall(why)) {
                 note("a program computes for ever", fmt::format(" ({})", why));
+                blame(verdict.symptoms.back());
                 silent = true;
             }
         }
+        blame(first);
         return silent;
+    }
+
+    /// Robots whose wheels turned for longer after the last byte to their main board than in the nominal run.
+    void notice_blind_drives() {
+        const double end = std::min(end_of(nominal), end_of(run));
+        for (const auto& [robot, turns] : run.turns) {
+            const double blind = blind_drive(run, robot, end);
+            const double usual = std::max(0.0, blind_drive(nominal, robot, end));
+            if (blind <= usual + campaign.limits.silence) continue;
+            note(fmt::format("wheels of {} turned after the last command", robot),
+                 fmt::format(" (for {:.3f} s)", blind));
+        }
     }
 
     bool degraded() {
@@ -158,6 +199,7 @@ struct Judge {
                 continue;
             note(metric.name + (now.value_or(0) < usual.value_or(0) ? " too small" : " too large"),
                  fmt::format(" ({:.6g}, nominal {:.6g})", now.value_or(NAN), usual.value_or(NAN)));
+            blame(verdict.symptoms.back());
             worse = true;
         }
         return worse;
@@ -287,8 +329,11 @@ Verdict judge(const Campaign& campaign, const Profile& nominal, const Profile& r
         verdict.outcome = Outcome::SilentCorruption;
         verdict.detail =
             fmt::format("up to {:.1f} cm from where the nominal run's robot was", 100 * verdict.departure_m);
+        judge.blame("wrong data were taken for right");
     }
+    judge.notice_blind_drives();
     if (verdict.outcome != Outcome::Recovered) verdict.recovery_s.reset();
+    if (!is_finding(verdict.outcome)) verdict.cause.clear();
     return verdict;
 }
 
@@ -304,6 +349,7 @@ json to_json(const Verdict& verdict) {
             {"metrics", metrics},
             {"symptoms", verdict.symptoms},
             {"detail", verdict.detail},
+            {"cause", verdict.cause},
             {"trace_sha256", verdict.trace_sha256}};
 }
 
@@ -320,6 +366,7 @@ Verdict verdict_from_json(const json& text) {
                                                             : std::nullopt);
     verdict.symptoms = text.at("symptoms").get<std::vector<std::string>>();
     verdict.detail = text.at("detail");
+    verdict.cause = text.value("cause", "");
     verdict.trace_sha256 = text.at("trace_sha256");
     return verdict;
 }

@@ -44,6 +44,7 @@ struct Verdict {
     std::vector<std::pair<std::string, std::optional<double>>> metrics;
     std::vector<std::string> symptoms;  ///< in a fixed order, without times
     std::string detail;                 ///< with times
+    std::string cause;                  ///< of a finding: what went wrong first, without times
     std::string trace_sha256;
 };
 

@@ -1,5 +1,6 @@
 #include "campaigns/engine/positions.h"
 
+#include "protocols/epuck_fields.h"
 #include "scenarios/reader/quantity.h"
 
 #include <fmt/format.h>
@@ -7,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace puckloop::faults {
 
@@ -59,12 +62,52 @@ std::vector<std::size_t> records_of(const Sender& sender, double after) {
     return begins;
 }
 
+namespace {
+
+/// The record of the Linux board's protocol that byte number `byte` of `record` of these bytes belongs to,
+/// and its place there; nothing if they are of another protocol.
+std::optional<std::pair<protocols::EpuckRecord, std::size_t>>
+epuck_place(const std::vector<std::size_t>& begins, std::size_t record, std::size_t byte,
+            const std::string& from) {
+    using protocols::EpuckRecord;
+    const auto length = [&](std::size_t number) { return begins[number + 1] - begins[number]; };
+    const std::size_t here = length(record);
+    if (from.ends_with(".pic"))
+        return here == size_of(EpuckRecord::Sensors) ? std::optional(std::pair(EpuckRecord::Sensors, byte))
+                                                     : std::nullopt;
+    const std::size_t whole = size_of(EpuckRecord::Actuators);
+    if (here == whole) return std::pair(EpuckRecord::Actuators, byte);
+    // Its last byte may go by itself, as ARGoS' and the project's own programs write it.
+    const bool last_follows = record + 2 < begins.size() && length(record + 1) == 1;
+    if (here == whole - 1 && last_follows) return std::pair(EpuckRecord::Actuators, byte);
+    if (here == 1 && record > 0 && length(record - 1) == whole - 1)
+        return std::pair(EpuckRecord::Actuators, whole - 1);
+    if (here == size_of(EpuckRecord::Session)) return std::pair(EpuckRecord::Session, byte);
+    return std::nullopt;
+}
+
+/// The other end of a Linux board's line sends sensor records: they speak that protocol.
+bool speaks_epuck(const std::string& link, const Profile& nominal) {
+    if (!link.ends_with(".uart")) return false;
+    const std::string board = link.substr(0, link.size() - std::string(".uart").size()) + ".pic";
+    const auto sender = nominal.senders.find(sender_name(link, board));
+    if (sender == nominal.senders.end()) return false;
+    const std::vector<std::size_t> begins = records_of(sender->second, 0);
+    for (std::size_t i = 0; i + 1 < begins.size(); ++i)
+        if (begins[i + 1] - begins[i] == protocols::size_of(protocols::EpuckRecord::Sensors)) return true;
+    return false;
+}
+
+}  // namespace
+
 std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const Profile& nominal) {
     const std::string name = sender_name(value_text(fault["link"]), value_text(fault["from"]));
     const auto found = nominal.senders.find(name);
     static const Sender kNobody{};
     const Sender& sender = found == nominal.senders.end() ? kNobody : found->second;
     const std::vector<std::size_t> begins = records_of(sender, sweep.after);
+    const std::string from = value_text(fault["from"]);
+    const bool has_fields = speaks_epuck(value_text(fault["link"]), nominal);
     std::vector<Position> positions;
     for (const int record : sweep.records) {
         const auto r = static_cast<std::size_t>(record);
@@ -78,6 +121,10 @@ std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const 
                 bytes.push_back(static_cast<int>(i));
         for (const int byte : bytes) {
             Position position{fmt::format("byte {}", byte), "0 s", ""};
+            if (has_fields && there && byte >= 0 && static_cast<std::size_t>(byte) < length)
+                if (const auto place = epuck_place(begins, r, static_cast<std::size_t>(byte), from))
+                    position.name = fmt::format("{} {} ({})", name_of(place->first),
+                                                field_at(place->first, place->second), position.name);
             if (sweep.records.size() > 1) position.name = fmt::format("record {} ", record) + position.name;
             if (!there)
                 position.missing =

@@ -9,7 +9,7 @@
 namespace puckloop::faults {
 
 struct Position {
-    std::string name;     ///< "byte 12", "record 3 byte 12"
+    std::string name;     ///< "byte 12", "record 3 sensors light[2] low (byte 44)"
     std::string begin;    ///< the byte's start bit in the nominal run, "3.512345 s", at most 1 us before
     std::string missing;  ///< why there is none; empty: there is one
 };

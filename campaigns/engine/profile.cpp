@@ -52,6 +52,9 @@ void read_trace(const std::filesystem::path& file, Profile& profile) {
         const double begin = number(start.empty() ? time : start);
         if (!fault.empty() && (!profile.first_fault_s || begin < *profile.first_fault_s))
             profile.first_fault_s = begin;
+        constexpr std::string_view kBoard = ".pic";
+        if (kind == "signal" && detail.starts_with("wheel_") && from.ends_with(kBoard))
+            profile.turns[std::string(from.substr(0, from.size() - kBoard.size()))].push_back(number(time));
         if (kind == "signal" || kind.empty() || nobody_sent(fault)) continue;
         Sender& sender = profile.senders[sender_name(std::string(link), std::string(from))];
         sender.times.push_back(begin);
@@ -60,6 +63,8 @@ void read_trace(const std::filesystem::path& file, Profile& profile) {
         starting = kind == "i2c" && detail == "start";
         if (starting) sender.addresses.emplace(value);
     }
+    for (auto& [robot, turns] : profile.turns)
+        std::sort(turns.begin(), turns.end());
     // Frames of two kinds of time on one link may be a little out of order.
     for (auto& [name, sender] : profile.senders)
         if (!std::is_sorted(sender.times.begin(), sender.times.end())) {

@@ -27,7 +27,8 @@ struct Pose {
 
 struct Profile {
     nlohmann::json report;
-    std::map<std::string, Sender> senders;                     ///< by "link from node"
+    std::map<std::string, Sender> senders;             ///< by "link from node"
+    std::map<std::string, std::vector<double>> turns;  ///< by robot: when a wheel turned, s, ascending
     std::map<std::string, std::map<std::string, Pose>> paths;  ///< by robot, then by time as written
     std::map<std::string, std::vector<std::string>> logs;      ///< of programs, by node: the lines
     std::set<std::string> log_shapes;                          ///< "robot0.linux: line without digits"

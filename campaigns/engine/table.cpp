@@ -141,14 +141,19 @@ std::string summary(const Results& results) {
         if (counts.contains(outcome)) text += fmt::format("{:<20}{:>6}\n", name_of(outcome), counts[outcome]);
     if (!results.pruned.empty()) text += fmt::format("{:<20}{:>6}\n", "pruned", results.pruned.size());
     const std::vector<Finding> findings = findings_of(results.results);
-    text += fmt::format("findings: {}\n", findings.size());
+    const std::vector<Cause> causes = causes_of(findings);
+    text += fmt::format("findings: {}\ncauses: {}\n", findings.size(), causes.size());
     std::size_t number = 0;
-    for (const Finding& finding : findings)
-        text += fmt::format("{:>3}  {}: {}: {} ({} case{})\n     {}\n", ++number, name_of(finding.outcome),
-                            finding.faults,
-                            finding.symptoms.empty() ? "departs from the nominal path" : finding.symptoms,
-                            finding.cases.size(), finding.cases.size() == 1 ? "" : "s",
-                            replay_command(results, finding.smallest->one.id));
+    for (const Cause& cause : causes) {
+        text += fmt::format("{}: {} ({} case{})\n", name_of(cause.outcome), cause.what, cause.cases,
+                            cause.cases == 1 ? "" : "s");
+        for (const Finding* finding : cause.findings)
+            text +=
+                fmt::format("{:>3}  {}: {} ({} case{})\n     {}\n", ++number, finding->faults,
+                            finding->symptoms.empty() ? "departs from the nominal path" : finding->symptoms,
+                            finding->cases.size(), finding->cases.size() == 1 ? "" : "s",
+                            replay_command(results, finding->smallest->one.id));
+    }
     return text + fmt::format("results in {}: report.html, results.csv, campaign.db\n", results.out.string());
 }
 

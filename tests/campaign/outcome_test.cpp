@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <vector>
@@ -224,6 +225,82 @@ TEST_CASE("what a fault puts on a line is no sign of life") {
     REQUIRE(profile.senders.contains(kBoard));
     CHECK(profile.senders.at(kBoard).times == std::vector<double>{1.4, 1.4, 1.4});
     CHECK(profile.first_fault_s == 1.4);
+}
+
+TEST_CASE("a robot whose wheels turn after the last command is one that drives on blindly") {
+    RandomStream random(GENERATE(1, 2, 3), "blind");
+    const Campaign campaign = campaign_of();
+    Profile nominal = nominal_run();
+    for (int i = 0; i < 1000; ++i)
+        nominal.turns["r"].push_back(0.01 * i);
+    const double at = 2 + 4 * random.uniform();
+    Profile run = nominal;
+    fire(run, at);
+    cut_times(run, kProgram, at, 20);
+    const double last = run.senders[kProgram].times.back();
+    const auto blind = [&] {
+        const Verdict verdict = judge(campaign, nominal, run, 1);
+        CHECK(verdict.outcome == Outcome::Hang);
+        const auto found = std::find(verdict.symptoms.begin(), verdict.symptoms.end(),
+                                     "wheels of r turned after the last command");
+        return std::pair(found != verdict.symptoms.end(), verdict.detail);
+    };
+    SECTION("to the end") {
+        const auto [found, detail] = blind();
+        CHECK(found);
+        CHECK_THAT(detail, Catch::Contains(fmt::format("(for {:.3f} s)", 9.99 - last)));
+    }
+    SECTION("not if they stop soon") {
+        std::erase_if(run.turns["r"],
+                      [&](double time) { return time > last + 0.9 * campaign.limits.silence; });
+        CHECK_FALSE(blind().first);
+    }
+    SECTION("what another robot's program sends is no command") {
+        run.senders["q.uart from q.linux"] = nominal.senders[kProgram];
+        CHECK(blind().first);
+    }
+}
+
+TEST_CASE("wheels' steps are read from the trace") {
+    const auto folder = tests::scratch_path("puckloop-profile-wheels");
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "report.json") << R"({"success": true, "nodes": {}})";
+    std::ofstream(folder / "trace.csv")
+        << "time_s,link,from,kind,value,detail,start_s,period_s,stretch_s,fault\n"
+           "1.5,r.world,r.pic,signal,7,wheel_left,,,,\n"
+           "1.6,r.world,r.pic,signal,1,led0,,,,\n"
+           "1.7,r.world,r.pic,signal,-3,wheel_right,,,,\n";
+    const Profile profile = read_profile(folder);
+    std::filesystem::remove_all(folder);
+    CHECK(profile.turns.at("r") == std::vector<double>{1.5, 1.7});
+    CHECK(profile.senders.empty());
+}
+
+TEST_CASE("what fell silent first is the cause, whatever the fault") {
+    const Campaign campaign = campaign_of();
+    const Profile nominal = nominal_run();
+    std::vector<CaseResult> results;
+    for (const bool board_first : {true, false, true})
+        for (const char* kind : {"drop", "flip"}) {
+            Profile run = nominal;
+            fire(run, 2.0);
+            cut_times(run, kBoard, board_first ? 3.0 : 5.0, 20);
+            cut_times(run, kProgram, board_first ? 4.0 : 3.0, 20);
+            CaseResult result;
+            result.one.id = static_cast<int>(results.size()) + 1;
+            result.one.faults = {{{"kind", kind}, {"link", "r.uart"}}};
+            result.verdict = judge(campaign, nominal, run, 1);
+            results.push_back(result);
+        }
+    const std::vector<Finding> findings = findings_of(results);
+    CHECK(findings.size() == 4);
+    const std::vector<Cause> causes = causes_of(findings);
+    REQUIRE(causes.size() == 2);
+    CHECK(causes[0].what == "r.uart from r.linux falls silent");
+    CHECK(causes[0].findings.size() == 2);
+    CHECK(causes[0].cases == 2);
+    CHECK(causes[1].what == "r.uart from r.pic falls silent");
+    CHECK(causes[1].cases == 4);
 }
 
 TEST_CASE("a finding is shown by its smallest case") {

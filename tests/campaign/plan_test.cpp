@@ -41,6 +41,42 @@ Campaign hello_campaign() {
 
 }  // namespace
 
+TEST_CASE("a byte of the Linux board's protocol is named by record and field") {
+    Profile nominal;
+    nominal.senders["robot0.uart from robot0.pic"] = records(1, 3, 72);
+    Sender& program = nominal.senders["robot0.uart from robot0.linux"];
+    program = records(1.05, 2, 12);
+    Sweep sweep;
+    sweep.positions = true;
+    sweep.records = {1};
+    const auto names = [&](const char* from, const std::vector<int>& bytes) {
+        sweep.bytes = bytes;
+        std::vector<std::string> all;
+        for (const Position& position :
+             positions_of(sweep, json{{"link", "robot0.uart"}, {"from", from}}, nominal))
+            all.push_back(position.name);
+        return all;
+    };
+    using Names = std::vector<std::string>;
+    CHECK(names("robot0.pic", {0, 15, 24, 71, 72}) ==
+          Names{"sensors rab_data low (byte 0)", "sensors proximity[3] high (byte 15)",
+                "sensors battery_ok low (byte 24)", "sensors ircom_bearing byte 3 (byte 71)", "byte 72"});
+    CHECK(names("robot0.linux", {1, 6, 10}) ==
+          Names{"actuators left high (byte 1)", "actuators ring_leds (byte 6)", "actuators reset (byte 10)"});
+    // The last byte by itself, as the project's own program writes it.
+    program = records(1.05, 2, 11);
+    program.times.push_back(1.16);
+    program.values.emplace_back("00");
+    program.frame_s.push_back(kByte);
+    CHECK(names("robot0.linux", {2}) == Names{"actuators right low (byte 2)"});
+    sweep.records = {2};
+    CHECK(names("robot0.linux", {0}) == Names{"actuators padding (byte 0)"});
+    // Another protocol.
+    sweep.records = {1};
+    nominal.senders["robot0.uart from robot0.pic"] = records(1, 3, 40);
+    CHECK(names("robot0.linux", {1}) == Names{"byte 1"});
+}
+
 TEST_CASE("a byte's position is a time of the nominal run") {
     RandomStream random(GENERATE(1, 2, 3, 4), "positions");
     const int length = 2 + static_cast<int>(random.below(80));
