@@ -1,12 +1,15 @@
 // Which frames became messages: from register traffic and what was on the air.
 
+#include "base/random.h"
 #include "tests/scratch.h"
 #include "traces/rab_losses/results.h"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -135,6 +138,40 @@ TEST_CASE("each message belongs to the frame that carried its bytes, the others 
     CHECK(groups[0].share() == Approx(3.0 / 9.0));
     CHECK(groups[1].name == "a -> b");
     CHECK(groups[2].name == "30 to 40 cm");
+}
+
+TEST_CASE("boards that send in step are said to be locked, others not") {
+    RandomStream random(GENERATE(1, 2, 3), "phases");
+    constexpr Time kLoop = 22 * kMillisecond;
+    const double phase = random.uniform();
+    const auto lag = static_cast<Time>(phase * static_cast<double>(kLoop));
+    std::map<std::string, std::vector<Time>> starts;
+    Time drifting = 3 * kMillisecond;
+    for (int i = 0; i < 400; ++i) {
+        starts["a"].push_back(i * kLoop + static_cast<Time>(100e6 * random.normal()));
+        starts["b"].push_back(i * kLoop + lag + static_cast<Time>(100e6 * random.normal()));
+        starts["c"].push_back(drifting);
+        drifting += kLoop + 100 * kMicrosecond;  // two turns in 400 loops
+    }
+    const std::vector<PhaseLock> locks = locked_phases(starts);
+    REQUIRE(locks.size() == 1);
+    CHECK(std::set{locks[0].leader, locks[0].follower} == std::set<std::string>{"a", "b"});
+    CHECK(locks[0].period == Approx(0.022).epsilon(0.02));
+    CHECK(locks[0].spread < 0.02);
+    const double found = locks[0].leader == "a" ? locks[0].phase : 1 - locks[0].phase;
+    CHECK(std::abs(std::remainder(found - phase, 1.0)) < 0.01);
+    // Every second frame of a faster one.
+    std::map<std::string, std::vector<Time>> multiple;
+    for (int i = 0; i < 100; ++i) {
+        if (i % 2 == 0) multiple["slow"].push_back(i * kLoop + 5 * kMillisecond);
+        multiple["fast"].push_back(i * kLoop);
+    }
+    REQUIRE(locked_phases(multiple).size() == 1);
+    CHECK(locked_phases(multiple)[0].follower == "slow");
+    // Too few show nothing.
+    for (auto& [name, times] : starts)
+        times.resize(15);
+    CHECK(locked_phases(starts).empty());
 }
 
 TEST_CASE("a frame right after another falls into the reading of the peaks") {

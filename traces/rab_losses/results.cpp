@@ -101,8 +101,12 @@ RabResults read_rab_results(const std::filesystem::path& folder, double from_s, 
     std::map<std::string, std::set<cosim::Time>> starts;
     for (const HeardFrame& frame : frames)
         starts[frame.sender].insert(frame.start);
-    for (const auto& [sender, times] : starts)
+    std::map<std::string, std::vector<cosim::Time>> rising;
+    for (const auto& [sender, times] : starts) {
         results.on_air[sender] = times.size();
+        rising[sender].assign(times.begin(), times.end());
+    }
+    results.locked = locked_phases(rising);
     results.from_s = from_s;
     results.to_s = std::min(to_s, cosim::to_seconds(last));
     results.losses = explain(frames, results.boards, cosim::from_seconds(results.to_s));

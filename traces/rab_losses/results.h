@@ -2,6 +2,7 @@
 // The losses of a run, from its results folder, as a table and as JSON.
 
 #include "traces/rab_losses/losses.h"
+#include "traces/rab_losses/phases.h"
 
 #include <filesystem>
 #include <map>
@@ -19,6 +20,7 @@ struct RabResults {
     std::map<std::string, BoardTraffic> boards;  ///< by robot
     std::map<std::string, std::size_t> on_air;   ///< frames sent, by robot
     Losses losses;
+    std::vector<PhaseLock> locked;
     double from_s = 0.0, to_s = 0.0;  ///< frames considered
 };
 

@@ -63,6 +63,11 @@ std::string to_text(const RabResults& results, double bin) {
             fmt::format("{:22} {:>7} {:>9} {:>7} {:>9.2f} {:>8} {:>11}\n", robot, traffic.sends.size(),
                         frames_on_air(results, robot), traffic.polls.size(), poll_period(traffic.polls) * 1e3,
                         messages_of(traffic), unexplained_of(results.losses, robot));
+    for (const PhaseLock& lock : results.locked)
+        text += fmt::format("\nphases locked: {} begins {:.2f} ms ({:.0f} %) after {}, +- {:.2f} ms, in {} "
+                            "frames of {:.2f} ms each: one fate repeats\n",
+                            lock.follower, lock.phase * lock.period * 1e3, lock.phase * 100.0, lock.leader,
+                            lock.spread * lock.period * 1e3, lock.frames, lock.period * 1e3);
     return text;
 }
 
@@ -92,11 +97,17 @@ std::string to_json(const RabResults& results, double bin) {
                          {"poll_period_s", poll_period(traffic.polls)},
                          {"messages", messages_of(traffic)},
                          {"unexplained_messages", unexplained_of(results.losses, robot)}};
-    return ordered_json{{"from_s", results.from_s},
-                        {"to_s", results.to_s},
-                        {"seed_delivered", kPublishedDelivered},
-                        {"groups", groups},
-                        {"boards", boards}}
+    ordered_json locked = ordered_json::array();
+    for (const PhaseLock& lock : results.locked)
+        locked.push_back({{"leader", lock.leader},
+                          {"follower", lock.follower},
+                          {"frames", lock.frames},
+                          {"period_s", lock.period},
+                          {"phase", lock.phase},
+                          {"spread", lock.spread}});
+    return ordered_json{
+               {"from_s", results.from_s}, {"to_s", results.to_s}, {"seed_delivered", kPublishedDelivered},
+               {"groups", groups},         {"boards", boards},     {"locked_phases", locked}}
                .dump(2) +
            "\n";
 }
