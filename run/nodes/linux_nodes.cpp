@@ -1,6 +1,7 @@
 #include "run/nodes/linux_nodes.h"
 
 #include "run/files/program_path.h"
+#include "run/nodes/linux_clocks.h"
 #include "run/nodes/plan_kit.h"
 
 #include <algorithm>
@@ -37,6 +38,9 @@ LinuxProgram linux_program(const RunSetup& setup, const std::string& name, const
     spec.program = find_program(board.command[0], folder).string();
     spec.args.assign(board.command.begin() + 1, board.command.end());
     spec.host_name = board.hostname;
+    spec.tty = board.serial_devices.front();
+    spec.tty_aliases.assign(board.serial_devices.begin() + 1, board.serial_devices.end());
+    spec.i2c = board.i2c_devices;
     spec.i2c_hertz = setup.scenario.i2c_clock;
     spec.seed = setup.scenario.seed;
     spec.start = cosim::from_seconds(board.start);
@@ -49,8 +53,9 @@ LinuxProgram linux_program(const RunSetup& setup, const std::string& name, const
     spec.grace = cosim::from_seconds(board.grace);
     spec.tty_batch = cosim::from_seconds(board.late.tty_batch);
     spec.i2c_hold = cosim::from_seconds(board.late.i2c_hold);
-    spec.oversleep = {cosim::from_seconds(board.late.oversleep),
-                      cosim::from_seconds(board.late.oversleep_jitter)};
+    const BoardClock clock = clock_of(setup.scenario, name, board);
+    spec.system_clock_ppm = clock.error_ppm;
+    spec.oversleep = {cosim::from_seconds(clock.oversleep), cosim::from_seconds(clock.jitter)};
     spec.programs = static_cast<std::uint32_t>(programs_of(setup.scenario) + (outside ? 1 : 0));
     spec.watchdog_s = request.stall_seconds * kWatchdogShare;
     spec.real_time = request.realtime;

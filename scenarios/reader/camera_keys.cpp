@@ -1,9 +1,11 @@
 #include "scenarios/reader/camera_keys.h"
 
 #include "emu/camera/model.h"
+#include "scenarios/reader/linux_keys.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -31,14 +33,7 @@ std::vector<LinuxCamera> cameras_of(Reader& reader) {
         reader.fail("camera_devices", "camera_devices has not one name for each of cameras",
                     "as many, such as [\"/dev/video0\", \"/dev/video1\"]");
     for (std::size_t i = 0; i < devices.size(); ++i) {
-        constexpr std::size_t kLongest = 50;
-        if (!devices[i].starts_with("/dev/") || devices[i].size() > kLongest)
-            reader.fail("camera_devices", fmt::format("'{}' is not a device", devices[i]),
-                        "a path such as /dev/video0");
-        // The serial port and the I2C bus of the same board would no longer be found.
-        if (devices[i] == "/dev/ttyS0" || devices[i] == "/dev/i2c-3")
-            reader.fail("camera_devices", fmt::format("'{}' is another device of the board", devices[i]),
-                        "a path such as /dev/video0");
+        check_device_name(reader, "camera_devices", devices[i], "/dev/video0");
         for (std::size_t k = 0; k < i; ++k)
             if (devices[k] == devices[i])
                 reader.fail("camera_devices", fmt::format("'{}' is there twice", devices[i]));
@@ -51,6 +46,13 @@ std::vector<LinuxCamera> cameras_of(Reader& reader) {
 
 void read_cameras(Reader& reader, LinuxBoard& board) {
     board.cameras = cameras_of(reader);
+    // The serial port and the I2C bus of the same board would no longer be found.
+    for (const LinuxCamera& camera : board.cameras)
+        for (const auto* others : {&board.serial_devices, &board.i2c_devices})
+            if (std::find(others->begin(), others->end(), camera.device) != others->end())
+                reader.fail(reader.has("camera_devices") ? "camera_devices" : "cameras",
+                            fmt::format("'{}' is another device of the board", camera.device),
+                            "a path such as /dev/video0");
     constexpr std::int64_t kRarest = 1'000'000;
     if (!board.cameras.empty()) board.save_frames = reader.integer("save_frames", 0, 0, kRarest);
 }

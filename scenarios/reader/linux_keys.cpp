@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
+#include <filesystem>
 
 namespace puckloop::scenarios {
 
@@ -42,7 +46,55 @@ std::vector<LinuxSignal> read_signals(Reader& reader) {
     return signals;
 }
 
+/// What a Linux board has under these names, or below these folders, whatever is connected to it.
+constexpr std::array kBoardsOwn{"/dev/null", "/dev/zero",  "/dev/full",   "/dev/random", "/dev/urandom",
+                                "/dev/tty",  "/dev/stdin", "/dev/stdout", "/dev/stderr", "/dev/console",
+                                "/dev/ptmx", "/dev/fd",    "/dev/pts",    "/dev/shm",    "/dev/mem"};
+
+bool is_boards_own(const std::string& name) {
+    return std::any_of(kBoardsOwn.begin(), kBoardsOwn.end(),
+                       [&](const std::string& own) { return name == own || name.starts_with(own + "/"); });
+}
+
+/// The names in `key`, the device's own first; `fallback` without the key.
+std::vector<std::string> read_names(Reader& reader, std::string_view key, std::vector<std::string> fallback) {
+    constexpr std::size_t kMost = 3;
+    if (!reader.has(key)) return fallback;
+    std::vector<std::string> names = reader.texts(key);
+    if (names.empty() || names.size() > kMost)
+        reader.fail(key, fmt::format("{} has {} names", key, names.size()), "one to three");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        check_device_name(reader, key, names[i], fallback.front());
+        if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+            names.begin() + static_cast<std::ptrdiff_t>(i))
+            reader.fail(key, fmt::format("'{}' is there twice", names[i]));
+    }
+    return names;
+}
+
 }  // namespace
+
+void check_device_name(Reader& reader, std::string_view key, const std::string& name,
+                       std::string_view example) {
+    constexpr std::size_t kLongest = 50;
+    const bool plain = std::filesystem::path(name).lexically_normal() == name && !name.ends_with('/');
+    if (!name.starts_with("/dev/") || name.size() > kLongest || !plain)
+        reader.fail(key, fmt::format("'{}' is not a device", name),
+                    fmt::format("a path such as {}", example));
+    if (is_boards_own(name))
+        reader.fail(key, fmt::format("'{}' is something else on every Linux board", name),
+                    fmt::format("a path such as {}", example));
+}
+
+void read_devices(Reader& reader, LinuxBoard& board) {
+    board.serial_devices = read_names(reader, "serial_devices", board.serial_devices);
+    board.i2c_devices = read_names(reader, "i2c_devices", board.i2c_devices);
+    for (const std::string& name : board.i2c_devices)
+        if (std::find(board.serial_devices.begin(), board.serial_devices.end(), name) !=
+            board.serial_devices.end())
+            reader.fail("i2c_devices", fmt::format("'{}' is another device of the board", name),
+                        "a path such as /dev/i2c-3");
+}
 
 void read_program(Reader& reader, LinuxBoard& board) {
     board.command = reader.texts("program");
@@ -63,6 +115,7 @@ void read_program(Reader& reader, LinuxBoard& board) {
     if (board.grace < 0 || board.grace > kLongestGrace)
         reader.fail("grace", "grace is out of range", "0 s to 1 h");
     read_delays(reader, board.late);
+    if (reader.has("clock_error")) board.clock_ppm = read_clock_error(reader, "clock_error");
 }
 
 void read_delays(Reader& reader, LinuxDelays& late) {
@@ -77,6 +130,7 @@ void read_delays(Reader& reader, LinuxDelays& late) {
     read("i2c_hold", late.i2c_hold);
     read("oversleep", late.oversleep, -kLongest);
     read("oversleep_jitter", late.oversleep_jitter);
+    if (reader.has("oversleep") || reader.has("oversleep_jitter")) late.oversleep_stated = true;
 }
 
 }  // namespace puckloop::scenarios

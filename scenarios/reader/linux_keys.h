@@ -10,6 +10,13 @@ namespace puckloop::scenarios {
 /// InputError with the line.
 void read_program(Reader& reader, LinuxBoard& board);
 
+/// `serial_devices` and `i2c_devices`. Throws InputError with the line.
+void read_devices(Reader& reader, LinuxBoard& board);
+
+/// Throws InputError if `name` in `key` is no file below /dev, or one that any Linux board has.
+void check_device_name(Reader& reader, std::string_view key, const std::string& name,
+                       std::string_view example);
+
 /// Those that are absent leave `late` as it is.
 void read_delays(Reader& reader, LinuxDelays& late);
 

@@ -101,6 +101,7 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     LinuxBoard board;
     board.hostname = robot_name;
     read_program(reader, board);
+    read_devices(reader, board);
     read_cameras(reader, board);
     board.place_line = table.line;
     reader.finish();

@@ -72,6 +72,7 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
         scenario.i2c_clock = run.quantity("i2c_clock", Dimension::Frequency, scenario.i2c_clock);
         if (scenario.i2c_clock < 1e3 || scenario.i2c_clock > 1e6)
             run.fail("i2c_clock", "i2c_clock is out of range", "1 kHz to 1 MHz");
+        scenario.ideal_linux_clocks = run.flag("ideal_linux_clocks", false);
         scenario.record_ir = run.flag("record_ir", false);
         scenario.allow = read_allowed(run);
         run.finish();

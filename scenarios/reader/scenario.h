@@ -69,6 +69,7 @@ struct LinuxDelays {
     double i2c_hold = 0.0;          ///< each transfer waits so long for the bus
     double oversleep = 0.0;         ///< a sleep ends so much later than asked; below 0: earlier
     double oversleep_jitter = 0.0;  ///< standard deviation; by it no sleep ends early
+    bool oversleep_stated = false;  ///< either of the two: nothing is drawn in their place
 };
 
 /// A signal that a program gets.
@@ -96,6 +97,10 @@ struct LinuxBoard {
     std::string end_signal = "TERM";  ///< when the run is to end
     double grace = 2.0;               ///< s from the end signal to SIGKILL
     LinuxDelays late{};
+    std::optional<double>
+        clock_ppm{};  ///< error of its clocks, + is fast; none: drawn (run/nodes/linux_clocks.h)
+    std::vector<std::string> serial_devices{"/dev/ttyS0"};  ///< names of the line to the main board
+    std::vector<std::string> i2c_devices{"/dev/i2c-3"};     ///< names of the robot's bus
     std::vector<LinuxCamera> cameras{};
     std::int64_t save_frames = 0;  ///< every so-many-th frame of each camera is kept as a picture; 0: none
     int place_line = 0;
@@ -173,12 +178,13 @@ struct Scenario {
     std::string name;                ///< the file's stem
     std::optional<double> duration;  ///< s; without it the run ends with the Linux programs
     std::uint64_t seed = 1;
-    double uart_baud = 115200.0;  ///< nominal rate of the UART links
-    double i2c_clock = 100e3;     ///< Hz, of Linux as bus master
-    bool record_ir = false;       ///< light of range-and-bearing boards, chip by chip, in trace.csv
-    bool record_ircom = false;    ///< IRcom's light, edge by edge, in trace.csv
-    physics::World world;         ///< robots in the same order as `robots`
-    physics::EventPlan events;    ///< what happens to the world while it runs
+    double uart_baud = 115200.0;      ///< nominal rate of the UART links
+    double i2c_clock = 100e3;         ///< Hz, of Linux as bus master
+    bool ideal_linux_clocks = false;  ///< Linux boards of several robots run alike, and sleep as asked
+    bool record_ir = false;           ///< light of range-and-bearing boards, chip by chip, in trace.csv
+    bool record_ircom = false;        ///< IRcom's light, edge by edge, in trace.csv
+    physics::World world;             ///< robots in the same order as `robots`
+    physics::EventPlan events;        ///< what happens to the world while it runs
     std::vector<RobotBoards> robots;
     std::vector<TamBoard> tams{};  ///< in the order of the world's booths
     RadioMedium radio{};

@@ -1,5 +1,7 @@
 // Small programs that know of no emulator, under the preloaded library.
 
+#include "base/random.h"
+#include "linuxboard/shim/wire/board_clock.h"
 #include "tests/linuxboard/bench.h"
 
 #include <catch2/catch.hpp>
@@ -71,6 +73,57 @@ TEST_CASE("sleeps end late, or early, on a board that oversleeps, waits for a de
     again.run(2 * kSecond);
     CHECK(unsteady.log().find(plain + plain + plain + plain + plain) == std::string::npos);
     CHECK(unsteady.log() == again.log());
+}
+
+TEST_CASE("a board's clock that is fast counts more, and its sleeps are shorter") {
+    // 1 % fast: of 10, 20 and 30 ms by its clock it takes 9.9, 19.8 and 29.7 ms. By its own clock, which is
+    // all that it sees, nothing is different.
+    const std::string plain = "10001 20001 30001 0\n";
+    auto spec = spec_for("clocks");
+    Bench ideal(spec);
+    ideal.run(2 * kSecond);
+    spec.system_clock_ppm = 10'000;
+    Bench fast(spec);
+    fast.run(2 * kSecond);
+    spec.system_clock_ppm = -10'000;
+    Bench slow(spec);
+    slow.run(2 * kSecond);
+    for (Bench* bench : {&ideal, &fast, &slow}) {
+        REQUIRE(bench->node().stop());
+        CHECK(bench->log().find("1000") != std::string::npos);
+    }
+    const double usual = to_seconds(ideal.node().stop()->time);
+    CHECK(to_seconds(fast.node().stop()->time) / usual == Approx(1 / 1.01).epsilon(1e-4));
+    CHECK(to_seconds(slow.node().stop()->time) / usual == Approx(1 / 0.99).epsilon(1e-4));
+    CHECK(ideal.log().find(plain) != std::string::npos);
+}
+
+TEST_CASE("the clock of a board never reads less than was slept for") {
+    using linuxboard::wire::board_time, linuxboard::wire::simulated_time;
+    RandomStream random(7, "clock");
+    for (int i = 0; i < 10'000; ++i) {
+        const auto error = static_cast<std::int64_t>(random.below(20'000'001)) - 10'000'000;
+        const auto counted =
+            static_cast<std::int64_t>(random.below(std::uint64_t{1} << (1 + random.below(62))));
+        const std::int64_t time = simulated_time(counted, error);
+        REQUIRE(board_time(time, error) >= counted);
+        REQUIRE((time == 0 || board_time(time - 1, error) < counted));
+    }
+    CHECK(simulated_time(INT64_MAX, -5) == INT64_MAX);
+    CHECK(board_time(123'456'789, 0) == 123'456'789);
+}
+
+TEST_CASE("a serial port is found by its other names") {
+    auto spec = spec_for("echo");  // opens /dev/ttyS0
+    spec.tty = "/dev/ttyO7";
+    spec.tty_aliases = {"/dev/serial0", "/dev/ttyS0"};
+    Bench bench(std::move(spec));
+    bench.send(5 * kMillisecond, "AB");
+    bench.send(8 * kMillisecond, std::string(1, '\0'));
+    bench.run(20 * kMillisecond);
+    CHECK(bench.sent() == "BC");
+    REQUIRE(bench.node().stop());
+    CHECK(bench.node().stop()->success);
 }
 
 TEST_CASE("received bytes wait for the driver's tick") {

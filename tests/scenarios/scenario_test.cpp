@@ -47,6 +47,41 @@ TEST_CASE("programs of the shipped rooms for calibration keep their files apart"
         CHECK(robot.linux_board->folder == robot.name);
 }
 
+TEST_CASE("a Linux board's devices are named, with aliases") {
+    const std::string board = kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\n";
+    const TemporaryFile plain(board);
+    const LinuxBoard usual = *read_scenario(plain.path()).robots[0].linux_board;
+    CHECK(usual.serial_devices == std::vector<std::string>{"/dev/ttyS0"});
+    CHECK(usual.i2c_devices == std::vector<std::string>{"/dev/i2c-3"});
+    const TemporaryFile file(board + "serial_devices = [\"/dev/ttyO0\", \"/dev/serial0\"]\n"
+                                     "i2c_devices = [\"/dev/i2c-12\"]\n");
+    const LinuxBoard named = *read_scenario(file.path()).robots[0].linux_board;
+    CHECK(named.serial_devices == std::vector<std::string>{"/dev/ttyO0", "/dev/serial0"});
+    CHECK(named.i2c_devices == std::vector<std::string>{"/dev/i2c-12"});
+    const std::pair<const char*, const char*> refused[] = {
+        {"serial_devices = []\n", "has 0 names"},
+        {"serial_devices = [\"ttyO0\"]\n", "is not a device"},
+        {"serial_devices = [\"/dev/../etc/passwd\"]\n", "is not a device"},
+        {"serial_devices = [\"/dev/null\"]\n", "something else on every Linux board"},
+        {"i2c_devices = [\"/dev/fd/0\"]\n", "something else on every Linux board"},
+        {"i2c_devices = [\"/dev/i2c-1\", \"/dev/i2c-1\"]\n", "is there twice"},
+        {"i2c_devices = [\"/dev/ttyS0\"]\n", "is another device"},
+        {"serial_devices = [\"/dev/video1\"]\ncameras = [\"omni\"]\n", "is another device"}};
+    for (const auto& [keys, problem] : refused) {
+        INFO(keys);
+        CHECK_THAT(problem_of(board + keys), Catch::Contains(problem));
+    }
+}
+
+TEST_CASE("a Linux board's clock has an error only if it is stated") {
+    const std::string board = kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\n";
+    const TemporaryFile plain(board), stated(board + "clock_error = \"-12 ppm\"\n");
+    CHECK_FALSE(read_scenario(plain.path()).robots[0].linux_board->clock_ppm);
+    CHECK(read_scenario(stated.path()).robots[0].linux_board->clock_ppm.value() == Approx(-12));
+    CHECK_THAT(problem_of(board + "clock_error = \"2 %\"\n"), Catch::Contains("out of range"));
+    CHECK_FALSE(read_scenario(plain.path()).robots[0].linux_board->late.oversleep_stated);
+}
+
 TEST_CASE("errata of a main board's chip are named, and others refused") {
     const TemporaryFile file(kArena + kRobot + "errata = [\"daw.b\", \"pwm-zero-duty\"]\n");
     CHECK(read_scenario(file.path()).robots[0].pic.errata ==

@@ -8,8 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <utility>
+#include <vector>
 
 using namespace puckloop;
 using nlohmann::json;
@@ -117,6 +120,57 @@ TEST_CASE("the programs of all robots end a run together") {
     CHECK(node(both, "right.linux").at("programs") == 2);
     CHECK(node(both, "right.linux").at("args") == json::array({"-x"}));
     CHECK(both.warnings.empty());
+}
+
+TEST_CASE("Linux boards of several robots are not alike, unless ideal ones are asked for") {
+    const auto clocks = [](const RunSetup& setup) {
+        std::vector<std::pair<double, double>> all;  // error in ppm, mean oversleep in s
+        for (const char* name : {"left.linux", "right.linux"}) {
+            const json program = node(setup, name);
+            all.emplace_back(program.at("system_clock_ppm"), program.at("oversleep").at("mean_s"));
+        }
+        return all;
+    };
+    Scene alone(kTwoRobots);
+    const json one = node(set_up(alone.request), "left.linux");
+    CHECK(one.at("system_clock_ppm") == 0);
+    CHECK(one.at("oversleep").at("mean_s") == 0);
+    Scene scene(kTwoRobots);
+    scene.request.linux_command = {"./other"};
+    const auto drawn = clocks(set_up(scene.request));
+    CHECK(drawn == clocks(set_up(scene.request)));
+    CHECK(drawn[0] != drawn[1]);
+    for (const auto& [error, late] : drawn) {
+        CHECK(std::abs(error) <= 20);
+        CHECK(late >= 60e-6);
+        CHECK(late <= 100e-6);
+    }
+    scene.request.seed = 2;
+    CHECK(clocks(set_up(scene.request)) != drawn);
+    std::string text = kTwoRobots;
+    text.replace(text.find("[run]\n"), 6, "[run]\nideal_linux_clocks = true\n");
+    Scene ideal(text);
+    ideal.request.linux_command = {"./other"};
+    CHECK(clocks(set_up(ideal.request)) == std::vector<std::pair<double, double>>(2, {0.0, 0.0}));
+    text = kTwoRobots;
+    text.replace(text.find("[robot.linux]\n"), 14,
+                 "[robot.linux]\nclock_error = \"5 ppm\"\noversleep = \"2 ms\"\n");
+    Scene stated(text);
+    stated.request.linux_command = {"./other"};
+    CHECK(clocks(set_up(stated.request))[0] == std::pair(5.0, 2e-3));
+    CHECK(clocks(set_up(stated.request))[1] == drawn[1]);
+}
+
+TEST_CASE("a Linux board's devices have the scenario's names") {
+    std::string text = kTwoRobots;
+    text.replace(text.find("[robot.linux]\n"), 14,
+                 "[robot.linux]\nserial_devices = [\"/dev/ttyO0\", \"/dev/serial0\"]\n"
+                 "i2c_devices = [\"/dev/i2c-4\", \"/dev/i2c-12\"]\n");
+    const Scene scene(text);
+    const json program = node(set_up(scene.request), "left.linux");
+    CHECK(program.at("tty") == "/dev/ttyO0");
+    CHECK(program.at("tty_aliases") == json{"/dev/serial0"});
+    CHECK(program.at("i2c") == json{"/dev/i2c-4", "/dev/i2c-12"});
 }
 
 TEST_CASE("a duration or a program, in the file or on the command line, ends a run") {

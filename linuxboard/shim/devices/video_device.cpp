@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/devices/ioctl_data.h"
 #include "linuxboard/shim/kernel/spec.h"
+#include "linuxboard/shim/wire/board_clock.h"
 #include "linuxboard/shim/wire/wire.h"
 
 #include <fmt/format.h>
@@ -49,11 +50,12 @@ bool changes_device(std::uint32_t request) {
 }  // namespace
 
 VideoDevice::VideoDevice(const CameraSpec& spec, std::size_t number, Time uptime, Scenery& scenery,
-                         char* memory)
+                         char* memory, std::int64_t clock_error)
     : path_(spec.device),
       card_(spec.card),
       number_(number),
       uptime_(uptime),
+      clock_error_(clock_error),
       scenery_(scenery),
       memory_(memory),
       log_(spec.log, spec.save, spec.save_every) {}
@@ -121,7 +123,7 @@ void VideoDevice::describe(std::size_t index, v4l2_buffer& buffer) const {
         buffer.flags |= V4L2_BUF_FLAG_QUEUED;
     if (own.state == Buffer::State::Done) buffer.flags |= V4L2_BUF_FLAG_DONE;
     if (own.done == 0) return;  // never filled
-    const Time stamp = uptime_ + own.done;
+    const Time stamp = uptime_ + wire::board_time(own.done, clock_error_);
     buffer.bytesused = frame_bytes();
     buffer.sequence = own.sequence;
     buffer.timestamp.tv_sec = stamp / kSecond;

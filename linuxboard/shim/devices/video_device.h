@@ -34,9 +34,10 @@ struct CameraSpec;
 class VideoDevice {
   public:
     /// `number` of the camera among the board's; `memory`: its part of the shared memory, wire::kVideoSize
-    /// bytes; `uptime`: CLOCK_MONOTONIC at time 0. Throws InputError if its log cannot be written.
+    /// bytes; `uptime`: CLOCK_MONOTONIC at time 0, `clock_error` its error (wire/board_clock.h). Throws
+    /// InputError if its log cannot be written.
     VideoDevice(const CameraSpec& spec, std::size_t number, cosim::Time uptime, Scenery& scenery,
-                char* memory);
+                char* memory, std::int64_t clock_error = 0);
 
     /// There is an open file `handle`.
     void open(int handle) { priorities_[handle] = kUsualPriority; }
@@ -113,6 +114,7 @@ class VideoDevice {
     std::string card_;
     std::size_t number_;
     cosim::Time uptime_;
+    std::int64_t clock_error_;
     Scenery& scenery_;
     char* memory_;
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/fields/json.h"
+#include "linuxboard/shim/wire/board_clock.h"
 
 #include <cerrno>
 #include <cmath>
@@ -143,8 +144,14 @@ void check(const LinuxSpec& spec) {
         if (spec.signals[i].time < spec.signals[i - 1].time) refuse("signals", "times do not rise");
     if (spec.program.empty()) refuse("program", "no program is given");
     if (spec.host_name.size() >= wire::kNameLength) refuse("host_name", "is longer than 63 characters");
-    if (spec.i2c.size() + 1 + spec.cameras.size() > wire::kMaximumDevices)
-        refuse("", "too many I2C adapters and cameras");
+    if (spec.tty.empty() && !spec.tty_aliases.empty()) refuse("tty_aliases", "there is no serial port");
+    if (1 + spec.tty_aliases.size() + spec.i2c.size() + spec.cameras.size() > wire::kMaximumDevices)
+        refuse("", "too many names of devices");
+}
+
+std::int64_t clock_error_of(const LinuxSpec& spec) {
+    constexpr double kPartsOfPpm = static_cast<double>(wire::kClockUnit) / 1e6;
+    return std::llround(spec.system_clock_ppm * kPartsOfPpm);
 }
 
 LinuxSpec parse_linux_spec(std::string_view text) {

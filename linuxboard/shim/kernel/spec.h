@@ -100,12 +100,14 @@ struct LinuxSpec {
     std::string cwd;
     std::string host_name = "epuck1";
     std::string tty = "/dev/ttyS0";
+    std::vector<std::string> tty_aliases;
     int fifo_trigger = TtyPort::kTrigger;
     std::vector<std::string> i2c{"/dev/i2c-3"};
     std::vector<CameraSpec> cameras;
     double i2c_hertz = 100'000.0;
     int i2c_nack_error = 121;  // EREMOTEIO
     double clock_ppm = 0.0;
+    double system_clock_ppm = 0.0;
     cosim::Time tty_batch = 0;
     cosim::Time i2c_hold = 0;
     wire::Oversleep oversleep{};
@@ -140,6 +142,7 @@ struct LinuxSpec {
             field("cwd", &S::cwd, "folder to work in; empty: the runner's"),
             field("host_name", &S::host_name, "what gethostname() gives, at most 63 characters"),
             field("tty", &S::tty, "the serial port; empty: none"),
+            field("tty_aliases", &S::tty_aliases, "other names of the serial port"),
             field("fifo_trigger", &S::fifo_trigger, "of the UART's receive FIFO").within(1, 64),
             field("i2c", &S::i2c, "names of the one adapter at the port i2c"),
             field("cameras", &S::cameras, "in the order of the node's scenery"),
@@ -147,6 +150,10 @@ struct LinuxSpec {
             field("i2c_nack_error", &S::i2c_nack_error, "errno where no slave acknowledges")
                 .as<I2cErrorForm>(),
             field("clock_ppm", &S::clock_ppm, "error of the board's clock, for the baud rate").in("ppm"),
+            field("system_clock_ppm", &S::system_clock_ppm,
+                  "error of the clocks that programs read, + is fast")
+                .in("ppm")
+                .within(-10'000, 10'000),
             field("tty_batch_s", &S::tty_batch,
                   "the driver hands received bytes on at whole multiples of this; 0: at once")
                 .in("s")
@@ -193,6 +200,9 @@ void check(const LinuxSpec& spec);
 
 /// From JSON text, checked. Throws InputError naming the key.
 LinuxSpec parse_linux_spec(std::string_view json);
+
+/// `system_clock_ppm` as wire/board_clock.h has it.
+std::int64_t clock_error_of(const LinuxSpec& spec);
 
 /// "INT" or "SIGINT"; nothing for what is no signal.
 std::optional<int> signal_named(std::string_view name);

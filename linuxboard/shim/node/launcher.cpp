@@ -201,14 +201,16 @@ void Launcher::prepare_page() {
     page_->ask_always = spec_.ask_always ? 1 : 0;
     page_->epoch = spec_.epoch_s * kNanosecondsPerSecond;
     page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
+    page_->clock_error = clock_error_of(spec_);
     page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();
     page_->charges = spec_.charges;
     page_->oversleep = spec_.oversleep;
     std::strncpy(page_->host_name, spec_.host_name.c_str(), sizeof page_->host_name - 1);
     std::size_t index = 0;
     const auto add = [&](wire::DeviceKind kind, const std::string& path) {
-        wire::DeviceName& device = page_->devices[index++];
+        wire::DeviceName& device = page_->devices[index];
         device.kind = kind;
+        device.device = static_cast<std::uint32_t>(index++);
         if (path.size() >= sizeof device.path) throw InputError("", path, "the device's name is too long");
         std::strncpy(device.path, path.c_str(), sizeof device.path - 1);
     };
@@ -217,6 +219,10 @@ void Launcher::prepare_page() {
         add(wire::DeviceKind::I2c, path);
     for (const CameraSpec& camera : spec_.cameras)
         add(wire::DeviceKind::Video, camera.device);
+    for (const std::string& path : spec_.tty_aliases) {
+        add(wire::DeviceKind::Tty, path);
+        page_->devices[index - 1].device = 0;
+    }
     if (!spec_.cameras.empty()) map_video();
 }
 

@@ -40,8 +40,9 @@ LinuxNode::LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery)
         ports_.push_back({"camera", cosim::PortKind::Signals});
     }
     for (std::size_t i = 0; i < spec_.cameras.size(); ++i)
-        kernel_.add_camera(std::make_unique<VideoDevice>(
-            spec_.cameras[i], i, cosim::from_seconds(spec_.uptime_s), *scenery_, launcher_->video_memory(i)));
+        kernel_.add_camera(std::make_unique<VideoDevice>(spec_.cameras[i], i,
+                                                         cosim::from_seconds(spec_.uptime_s), *scenery_,
+                                                         launcher_->video_memory(i), clock_error_of(spec_)));
     if (can_foresee()) speculation_.emplace(*this);
     if (spec_.start == 0) {
         start_program();

@@ -16,7 +16,11 @@ std::int64_t clock_nanoseconds(clockid_t clock);
 timespec timespec_of_nanoseconds(std::int64_t nanoseconds);
 Time from_timespec(const timespec& time);
 timespec to_timespec(Time time);
-/// Simulated time `duration` from now; kNever stays.
+/// What the board's clocks count in `simulated` time, and the simulated time in which they count so much, at
+/// least: they are fast or slow by Page::clock_error.
+Time board_time(Time simulated);
+Time simulated_time(Time of_board);
+/// Simulated time at which the board has counted `duration` from now on; kNever stays.
 Time time_after(Time duration);
 /// Simulated time at which `clock` reads `time`.
 Time absolute_deadline(clockid_t clock, const timespec& time);

@@ -126,7 +126,8 @@ SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int time
                             0};
     }
     int left = timeout;
-    if (deadline != kNever) left = static_cast<int>((deadline - now() + kMillisecond - 1) / kMillisecond);
+    if (deadline != kNever)
+        left = static_cast<int>((board_time(deadline - now()) + kMillisecond - 1) / kMillisecond);
     const int ready = poll(entries, count, left);
     if (ready <= 0) return ready;
     epoll_event ready_devices[kMostWatches];

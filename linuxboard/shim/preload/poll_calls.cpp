@@ -240,7 +240,7 @@ SHIM_EXPORT int select(int count, fd_set* reads, fd_set* writes, fd_set* errors,
     }
     const int result = select_program(count, reads, writes, errors, deadline);
     if (timeout != nullptr && result >= 0) {  // as Linux does: what is left
-        const Time left = std::max<Time>(0, deadline - now());
+        const Time left = board_time(std::max<Time>(0, deadline - now()));
         given = {left / kSecond, left % kSecond / kMicrosecond};
         const int error = errno;
         put_to_program(timeout, given);

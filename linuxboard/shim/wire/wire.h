@@ -15,7 +15,7 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 5;
+inline constexpr std::uint32_t kVersion = 6;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -118,7 +118,8 @@ struct Charges {
 
 struct DeviceName {
     DeviceKind kind = DeviceKind::None;
-    char path[60] = {};
+    std::uint32_t device = 0;  ///< index of the device that it names: its own, or of one with another name
+    char path[56] = {};
 };
 
 /// How much later than asked a sleep ends: timer slack and whatever else runs on the board. Picoseconds.
@@ -218,6 +219,7 @@ struct Page {
     std::uint32_t ask_always = 0;  ///< 1: the library answers nothing by itself
     std::int64_t epoch = 0;        ///< CLOCK_REALTIME at simulated time 0, nanoseconds since 1970
     std::int64_t uptime = 0;       ///< CLOCK_MONOTONIC at simulated time 0, nanoseconds
+    std::int64_t clock_error = 0;  ///< of all its clocks (board_clock.h)
     std::int64_t wall_origin = 0;  ///< real-time mode: host CLOCK_MONOTONIC at simulated time 0, ns
     std::uint64_t seed = 0;
     Charges charges;

@@ -19,6 +19,7 @@ constexpr SchemaKey kRun[]{
     {"record_every", "time", "period of trajectory.csv and sensors.csv; default 100 ms"},
     {"uart_baud", "number", "nominal rate of the UART links; default 115200"},
     {"i2c_clock", "frequency", "SCL of the Linux boards; default 100 kHz"},
+    {"ideal_linux_clocks", "flag", "Linux boards of several robots run alike; default false"},
     {"allow", "texts", "failures that leave the run successful: program, silent_line, hung"},
     {"record_ir", "flag", "light of the range-and-bearing boards, chip by chip, in trace.csv"}};
 constexpr SchemaKey kArena[]{
@@ -75,10 +76,13 @@ constexpr SchemaKey kProgram[]{
     {"hostname", "text", ""}, {"start", "time", "default 0"}, {"restart", "texts", "times at which it is killed and started again"},
     {"folder", "text", "to work in, below the results"},
     {"end_signal", "text", "when the run ends; default TERM"}, {"grace", "time", "from the end signal to SIGKILL; default 2 s"},
-    {"tty_batch", "time", ""}, {"i2c_hold", "time", ""}, {"oversleep", "time", ""}, {"oversleep_jitter", "time", ""}};
+    {"tty_batch", "time", ""}, {"i2c_hold", "time", ""}, {"oversleep", "time", ""}, {"oversleep_jitter", "time", ""},
+    {"clock_error", "ratio", "of its clocks, such as \"20 ppm\""}};
 constexpr SchemaKey kSignal[]{{"at", "time", ""}, {"send", "text", "INT, TERM, USR1, ..."}};
 constexpr SchemaKey kLinux[]{
     {"arguments", "texts", "more of them, behind program's or --linux's"}, {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
+    {"serial_devices", "texts", "names of the line to the main board; default /dev/ttyS0"},
+    {"i2c_devices", "texts", "names of the robot's bus; default /dev/i2c-3"},
     {"save_frames", "integer", "every so-many-th frame is kept as a picture"}};
 constexpr SchemaKey kIrcom[]{{"record", "flag", "every edge of light in trace.csv"}};
 constexpr SchemaKey kTam[]{

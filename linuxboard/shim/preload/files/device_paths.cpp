@@ -32,7 +32,7 @@ int named(const char* path) {
     for (std::uint32_t i = 0; i < wire::kMaximumDevices; ++i) {
         const wire::DeviceName& device = page().devices[i];
         if (device.kind != wire::DeviceKind::None && std::strcmp(path, device.path) == 0)
-            return forbidden_unless_active(static_cast<int>(i));
+            return forbidden_unless_active(static_cast<int>(device.device));
     }
     return kNoDevice;
 }

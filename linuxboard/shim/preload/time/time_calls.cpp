@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/wire/board_clock.h"
 
 #include <sys/time.h>
 #include <sys/timex.h>
@@ -33,7 +34,15 @@ static std::int64_t clock_origin(clockid_t clock) {
 }
 
 std::int64_t clock_nanoseconds(clockid_t clock) {
-    return clock_origin(clock) + now() / kNanosecond;
+    return clock_origin(clock) + board_time(now()) / kNanosecond;
+}
+
+Time board_time(Time simulated) {
+    return wire::board_time(simulated, page().clock_error);
+}
+
+Time simulated_time(Time of_board) {
+    return wire::simulated_time(of_board, page().clock_error);
 }
 
 timespec timespec_of_nanoseconds(std::int64_t nanoseconds) {
@@ -58,6 +67,7 @@ timespec to_timespec(Time time) {
 Time time_after(Time duration) {
     const Time start = now();
     if (duration < 0) return start;
+    duration = simulated_time(duration);
     return start > kNever - duration ? kNever : start + duration;
 }
 
@@ -66,7 +76,7 @@ Time absolute_deadline(clockid_t clock, const timespec& time) {
     if (time.tv_sec >= INT64_MAX / kNanosecondsPerSecond) return kNever;
     const std::int64_t relative = time.tv_sec * kNanosecondsPerSecond + time.tv_nsec - clock_origin(clock);
     if (relative > kLast) return kNever;
-    return relative < 0 ? 0 : relative * kNanosecond;
+    return relative < 0 ? 0 : simulated_time(relative * kNanosecond);
 }
 
 bool is_valid(const timespec& time) {
@@ -193,7 +203,7 @@ SHIM_EXPORT int clock_nanosleep(clockid_t clock, int flags, const timespec* requ
     const bool is_absolute = (flags & TIMER_ABSTIME) != 0;
     const Time deadline = is_absolute ? absolute_deadline(clock, wanted) : time_after(from_timespec(wanted));
     if (!sleep_until(deadline)) return 0;
-    const timespec left = to_timespec(deadline > now() ? deadline - now() : 0);
+    const timespec left = to_timespec(deadline > now() ? board_time(deadline - now()) : 0);
     if (!is_absolute && remain != nullptr && !put_to_program(remain, left)) return EFAULT;
     return EINTR;
 }
@@ -217,6 +227,6 @@ SHIM_EXPORT unsigned sleep(unsigned seconds) {
     if (!active()) return REAL(sleep)(seconds);
     const Time deadline = time_after(seconds * kSecond);
     if (!sleep_until(deadline)) return 0;
-    const Time left = deadline - now();
+    const Time left = deadline <= now() ? 0 : board_time(deadline - now());
     return left <= 0 ? 0 : static_cast<unsigned>((left + kSecond / 2) / kSecond);
 }

@@ -22,7 +22,9 @@ timeval to_timeval(Time time) {
     return {time / kSecond, time % kSecond / kMicrosecond};
 }
 Time left_of(const Timer& timer) {
-    return timer.deadline == kNever ? 0 : std::max<Time>(timer.deadline - now(), 1);
+    return timer.deadline == kNever
+               ? 0
+               : std::max<Time>(board_time(std::max<Time>(timer.deadline - now(), 1)), 1);
 }
 
 itimerspec read_timer(const Timer& timer) {

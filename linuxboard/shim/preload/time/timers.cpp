@@ -1,5 +1,6 @@
 #include "linuxboard/shim/preload/time/timers.h"
 
+#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/host.h"
 
@@ -71,8 +72,9 @@ std::uint64_t fire_timers(Time now) {
         if (timer.deadline > now) continue;
         std::uint64_t count = 1;
         if (timer.interval > 0) {
-            count += static_cast<std::uint64_t>((now - timer.deadline) / timer.interval);
-            timer.deadline += static_cast<Time>(count) * timer.interval;
+            const Time interval = simulated_time(timer.interval);
+            count += static_cast<std::uint64_t>((now - timer.deadline) / interval);
+            timer.deadline += static_cast<Time>(count) * interval;
         } else {
             timer.deadline = kNever;
         }
