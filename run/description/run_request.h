@@ -20,6 +20,7 @@ struct RunRequest {
     std::vector<std::string> variables;  ///< "NAME=VALUE": in place of the scenario's [variables]
     std::filesystem::path floor;         ///< PNG file for an ARGoS experiment's floor; empty: none
     double floor_scale = 0.0;            ///< of that, pixels a metre; 0: it covers the arena
+    std::filesystem::path mission;       ///< file whose [mission] scores the run; empty: the scenario's own
     std::vector<std::string> firmware;  ///< "BOARD=IMAGE": robot0.pic=x.hex, tam0=x.elf, or pic=x.hex for all
     std::vector<std::string> linux_command;  ///< replaces every robot's Linux program
     std::optional<double> linux_start;       ///< s: when every robot's Linux program is started

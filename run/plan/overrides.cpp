@@ -85,7 +85,7 @@ void leave_out_idle_boards(Scenario& scenario) {
 }  // namespace
 
 scenarios::Settings settings_of(const RunRequest& request) {
-    return {request.variables, request.seed, request.floor, request.floor_scale};
+    return {request.variables, request.seed, request.floor, request.floor_scale, request.mission};
 }
 
 void apply(const RunRequest& request, Scenario& scenario) {

@@ -4,6 +4,7 @@
 #include "run/plan/state_plan.h"
 #include "run/plan/stats_plan.h"
 #include "run/report/fault_results.h"
+#include "run/report/mission_score.h"
 #include "run/report/supply_resets.h"
 
 #include <fmt/format.h>
@@ -170,6 +171,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
                         {"events", events_of(nodes)},
                         {"warnings", warnings_of(setup, outcome)},
                         {"unmodelled_registers", unmodelled_of(nodes)}};
+    if (setup.scenario.mission)
+        report["mission"] = mission_score(*setup.scenario.mission, setup.out / "trajectory.csv");
     if (!setup.scenario.not_taken.empty()) report["not_taken_over"] = setup.scenario.not_taken;
     if (!setup.from.empty())
         report["from"] = {{"file", setup.from.string()},
@@ -186,6 +189,8 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
     text += states_summary(setup, outcome) + stats_summary(outcome) + faults_summary(outcome) +
             supply_resets_summary(outcome);
+    if (setup.scenario.mission)
+        text += "\n" + mission_summary(*setup.scenario.mission, setup.out / "trajectory.csv");
     const std::vector<std::string> warnings = warnings_of(setup, outcome);
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);

@@ -12,6 +12,7 @@
 #include "scenarios/reader/compose/variables.h"
 #include "scenarios/reader/events/event_tables.h"
 #include "scenarios/reader/faults/fault_tables.h"
+#include "scenarios/reader/mission_table.h"
 #include "scenarios/reader/radio_tables.h"
 #include "scenarios/reader/robot_tables.h"
 #include "scenarios/reader/tam_tables.h"
@@ -88,6 +89,11 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
         read_tam(name, *table, scenario);
     for (const TomlValue* table : top.tables("group"))
         read_group(name, *table, scenario);
+    scenario.mission = read_mission(top, period);
+    if (!settings.mission.empty()) {
+        scenario.mission = read_mission_of(settings.mission, period);
+        scenario.files.push_back(settings.mission);
+    }
     scenario.radio = read_radio(top);
     scenario.coordinator = read_coordinator(top);
     read_bluetooth(top, scenario);

@@ -6,6 +6,7 @@
 #include "emu/pic/pic_spec.h"
 #include "emu/rab_board/rab_spec.h"
 #include "emu/tam_avr/tam_spec.h"
+#include "missions/mission.h"
 #include "physics/events/event.h"
 
 #include <cstdint>
@@ -191,6 +192,7 @@ struct Scenario {
     BluetoothMedium bluetooth{};
     std::optional<CoordinatorPlace> coordinator{};
     std::vector<CanBus> can_buses{};
+    std::optional<missions::Mission> mission{};
     std::vector<cosim::FaultSpec> faults;
     std::vector<std::string> allow{};      ///< failures that do not fail the run (allowed_failures.h)
     std::vector<std::string> not_taken{};  ///< of an ARGoS experiment: "line 7: ...", what is otherwise here
@@ -205,6 +207,7 @@ struct Settings {
     std::optional<std::uint64_t> seed{};   ///< in place of the scenario's
     std::filesystem::path floor{};         ///< PNG file for the floor of an ARGoS experiment; empty: none
     double floor_scale = 0.0;              ///< of that, pixels a metre; 0: it covers the arena
+    std::filesystem::path mission{};       ///< file whose [mission] counts; empty: the scenario's own
 };
 
 /// Reads and checks a scenario, TOML or, by its ending .argos or .xml, an ARGoS experiment; paths in it are

@@ -32,9 +32,10 @@ const std::map<std::string, std::size_t> kKnown = {
 
 Includes includes() {
     Includes all;
-    for (const char* top : {"base", "bench", "benchmark", "campaigns", "cosim", "debug", "emu", "ends", "gap",
-                            "linuxboard", "physics", "protocols", "replay", "reproductions", "run",
-                            "scenarios", "selftest", "tools", "traces"})
+    for (const char* top :
+         {"base",          "bench", "benchmark",  "campaigns", "cosim",   "debug",     "emu",
+          "ends",          "gap",   "linuxboard", "missions",  "physics", "protocols", "replay",
+          "reproductions", "run",   "scenarios",  "selftest",  "tools",   "traces"})
         for (const std::string& file : layers::files_below(top)) {
             if (!layers::is_code(file)) continue;
             for (const std::string& included : layers::includes_of(file)) {

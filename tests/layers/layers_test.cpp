@@ -62,6 +62,7 @@ const std::vector<std::string> kFolders = {
     "physics/ircom",
     "physics/node",
     "physics/render",
+    "missions",
     "scenarios/argos",
     "scenarios",
     "linuxboard/control",
@@ -168,9 +169,9 @@ TEST_CASE("folders depend downward only") {
     const fs::path source = PUCKLOOP_SOURCE;
     std::set<std::string> upward;
     int files = 0;
-    for (const char* top : {"base", "protocols", "cosim", "emu", "physics", "scenarios", "linuxboard",
-                            "debug", "ends", "traces", "run", "bench", "replay", "campaigns", "reproductions",
-                            "benchmark", "selftest", "tools"}) {
+    for (const char* top : {"base", "protocols", "cosim", "emu", "physics", "missions", "scenarios",
+                            "linuxboard", "debug", "ends", "traces", "run", "bench", "replay", "campaigns",
+                            "reproductions", "benchmark", "selftest", "tools"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source / top)) {
             const std::string extension = entry.path().extension().string();
             if (extension != ".h" && extension != ".cpp") continue;

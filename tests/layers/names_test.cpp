@@ -47,9 +47,9 @@ void collect(const fs::path& file, std::map<std::string, std::set<std::string>>&
 TEST_CASE("no two files define a type of the same name in the same namespace") {
     std::map<std::string, std::set<std::string>> places;
     for (const char* folder :
-         {"base", "bench",     "benchmark",  "campaigns", "cosim",     "debug",  "emu",
-          "ends", "gap",       "linuxboard", "physics",   "protocols", "replay", "reproductions",
-          "run",  "scenarios", "selftest",   "tests",     "tools",     "traces"})
+         {"base",          "bench", "benchmark",  "campaigns", "cosim",   "debug",     "emu",
+          "ends",          "gap",   "linuxboard", "missions",  "physics", "protocols", "replay",
+          "reproductions", "run",   "scenarios",  "selftest",  "tests",   "tools",     "traces"})
         for (const auto& entry : fs::recursive_directory_iterator(fs::path(PUCKLOOP_SOURCE) / folder)) {
             const std::string extension = entry.path().extension().string();
             if (extension == ".cpp" || extension == ".h") collect(entry.path(), places);

@@ -15,9 +15,9 @@
 namespace {
 
 const std::vector<std::string> kTops = {
-    "base",     "bench", "benchmark",  "campaigns", "cosim",     "debug",   "docs",          "emu",
-    "ends",     "gap",   "linuxboard", "physics",   "protocols", "replay",  "reproductions", "run",
-    "selftest", "tests", "tools",      "traces",    "scenarios", "firmware"};
+    "base", "bench",    "benchmark",  "campaigns", "cosim",   "debug",     "docs",    "emu",
+    "ends", "gap",      "linuxboard", "missions",  "physics", "protocols", "replay",  "reproductions",
+    "run",  "selftest", "tests",      "tools",     "traces",  "scenarios", "firmware"};
 
 /// Named as examples of what a user writes, or made by the build.
 const std::set<std::string> kExamples = {"docs/gap_predictive/NAME.svg", "firmware/tam/tam.elf"};

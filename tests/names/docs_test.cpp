@@ -87,9 +87,10 @@ TEST_CASE("every room of the project has a README that the map names") {
             for (const std::string& line : page.lines)
                 map += line + "\n";
     CHECK(map.size() > 1000);
-    for (const char* room : {"base", "bench", "benchmark", "campaigns", "cosim", "debug", "emu", "ends",
-                             "gap", "linuxboard", "physics", "protocols", "replay", "reproductions", "run",
-                             "scenarios", "selftest", "tools", "traces"}) {
+    for (const char* room :
+         {"base",          "bench", "benchmark",  "campaigns", "cosim",   "debug",     "emu",
+          "ends",          "gap",   "linuxboard", "missions",  "physics", "protocols", "replay",
+          "reproductions", "run",   "scenarios",  "selftest",  "tools",   "traces"}) {
         INFO(room);
         CHECK(std::filesystem::exists(root / room / "README.md"));
         CHECK(map.find("(../" + std::string(room) + "/README.md)") != std::string::npos);

@@ -28,6 +28,8 @@ PLACES = {
     "\n[radio]\n": ("radio",), "\n[bluetooth]\n": ("bluetooth",), "\n[ircom]\n": ("ircom",),
     "\n[[can_bus]]\ncontrollers = [\"robot0.pic.can1\", \"robot0.pic.can2\"]\n": ("can_bus",),
     "\n[coordinator]\n": ("coordinator",),
+    "\n[mission]\nkind = \"coverage\"\narea = {{ size = [\"1 m\", \"1 m\"] }}\n": ("mission",),
+    "\n[mission]\nkind = \"coverage\"\n[mission.area]\nsize = [\"1 m\", \"1 m\"]\n": ("mission", "area"),
     "\n[[fault]]\nlink = \"robot0.uart\"\n": ("fault",),
     "\n[[event]]\nat = \"1 s\"\nlift = \"robot0\"\n": ("event",),
     "": (),

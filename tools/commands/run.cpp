@@ -185,6 +185,11 @@ void declare_run(Command& app, int& status) {
         ->check(number_between(0.0, kLongestRun))
         ->type_name("S");
     command
+        ->add_option("--mission", request.mission,
+                     "file whose table [mission] scores the run in place of the scenario's (docs/swarm.md)")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command
         ->add_option("--floor", request.floor,
                      "PNG file for the floor of an ARGoS experiment (docs/swarm.md)")
         ->check(not_empty())

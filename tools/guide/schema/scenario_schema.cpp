@@ -114,6 +114,14 @@ constexpr SchemaKey kPlace[]{
     {"start", "angle", "of the first unit on a ring"}, {"positions", "any", "of a list: [[\"x\", \"y\"], ...]"},
     {"headings", "any", "of a list"}, {"heading", "text", "an angle, a distribution, or in or out on a ring"},
     {"max_trials", "integer", "until a unit that finds no room is an error; default 1000"}, {"gap", "length", "kept between units"}};
+constexpr SchemaKey kMission[]{
+    {"kind", "text", "aggregation, shelter, foraging, coverage or grid_exploration"},
+    {"begin", "time", "steps count from here on; default 0"}, {"step", "time", "default 100 ms"},
+    {"at_end", "flag", "aggregation, shelter: the share of robots at the end"},
+    {"cells", "integer", "grid_exploration: rows and columns; default 10"}};
+constexpr SchemaKey kRegion[]{
+    {"shape", "text", "rectangle (default) or disc"}, {"centre", "lengths2", "default the arena's"},
+    {"size", "lengths2", "of a rectangle"}, {"radius", "length", "of a disc"}};
 constexpr SchemaKey kCan[]{{"name", "text", ""}, {"controllers", "texts", "robot0.pic.can1, ..."}};
 constexpr SchemaKey kFault[]{
     {"name", "text", ""}, {"link", "text", "robot0.uart, robot0.i2c, ..."}, {"node", "text", "robot0.pic, ..."},
@@ -265,7 +273,7 @@ ordered_json scenario_schema() {
     properties["cylinder"] = list_schema(table_schema("a cylinder", kCylinder, {"centre", "radius"}));
     properties["lamp"] = list_schema(table_schema("a lamp", kLamp, {"centre"}));
     properties["speaker"] = list_schema(table_schema("a loudspeaker", kSpeaker, {"position", "level"}));
-    properties["floor_patch"] = list_schema(table_schema("paper on the floor", kPatch, {"centre", "grey"}));
+    properties["floor_patch"] = list_schema(table_schema("paper on the floor", kPatch, {"centre"}));
     properties["light"] = table_schema("the room's light", kLight);
     properties["parameters"] = parameters_schema();
     properties["robot"] = list_schema(robot_schema());
@@ -274,6 +282,11 @@ ordered_json scenario_schema() {
     properties["radio"] = table_schema("the air between radio modules", kRadio);
     properties["coordinator"] = coordinator_schema();
     properties["bluetooth"] = table_schema("the air between Bluetooth modules", kBluetooth);
+    ordered_json mission = table_schema("what the swarm is scored by", kMission, {"kind"});
+    mission["properties"]["spot"] = list_schema(table_schema("counted; coverage: forbidden", kRegion));
+    mission["properties"]["nest"] = table_schema("foraging: where items go", kRegion);
+    mission["properties"]["area"] = table_schema("coverage, grid_exploration: what is covered", kRegion);
+    properties["mission"] = std::move(mission);
     properties["can_bus"] = list_schema(table_schema("wires between CAN modules", kCan, {"controllers"}));
     properties["ircom"] = table_schema("words by the light of proximity sensors", kIrcom);
     properties["fault"] = list_schema(fault_schema());

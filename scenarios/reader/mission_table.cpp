@@ -1,0 +1,116 @@
+#include "scenarios/reader/mission_table.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::scenarios {
+
+namespace {
+
+constexpr double kLargest = 1000.0;  // m
+
+/// shape = "disc" with radius, or "rectangle" with size.
+missions::Region read_region(const std::string& file, const std::string& where, const TomlValue& table) {
+    Reader reader(file, where, table);
+    missions::Region region;
+    if (reader.has("centre")) {
+        const auto centre = reader.quantities("centre", Dimension::Length, 2);
+        region.x = centre[0];
+        region.y = centre[1];
+    }
+    const auto size = [&](const char* key, double value) {
+        if (!(value > 0.0 && value <= kLargest))
+            reader.fail(key, fmt::format("{} is out of range", key), "more than 0 m, at most 1000 m");
+        return value;
+    };
+    region.disc = reader.choice("shape", "rectangle", {"rectangle", "disc"}) == "disc";
+    if (const char* other = region.disc ? "size" : "radius"; reader.has(other))
+        reader.fail(other, fmt::format("a {} has no {}", region.disc ? "disc" : "rectangle", other),
+                    region.disc ? "radius" : "size");
+    if (region.disc) {
+        region.radius = size("radius", reader.quantity("radius", Dimension::Length));
+    } else {
+        const auto sides = reader.quantities("size", Dimension::Length, 2);
+        region.length = size("size", sides[0]);
+        region.width = size("size", sides[1]);
+    }
+    reader.finish();
+    return region;
+}
+
+/// `value` and `period` in s.
+void check_multiple(Reader& reader, const char* key, double value, double period) {
+    const double periods = value / period;
+    if (std::abs(periods - std::round(periods)) > 1e-6)
+        reader.fail(key, fmt::format("{} is no multiple of {:g} s, the period of the recording", key, period),
+                    fmt::format("another {}, or another record_every of [run]", key));
+}
+
+void refuse_unless(Reader& reader, const char* key, bool used, const std::string& kind) {
+    if (reader.has(key) && !used)
+        reader.fail(key, fmt::format("{} has no {}", kind, key), "the keys in docs/swarm.md");
+}
+
+missions::Region read_needed(Reader& reader, const char* key) {
+    const TomlValue* table = reader.table(key);
+    if (!table) reader.fail_missing(key, fmt::format("[mission.{}] with shape and size or radius", key));
+    return read_region(reader.file(), fmt::format("mission.{}", key), *table);
+}
+
+}  // namespace
+
+std::optional<missions::Mission> read_mission(Reader& top, double period) {
+    const TomlValue* table = top.table("mission");
+    if (!table) return std::nullopt;
+    Reader reader(top.file(), "mission", *table);
+    missions::Mission mission;
+    mission.name =
+        reader.choice("kind", "", {"aggregation", "shelter", "foraging", "coverage", "grid_exploration"});
+    mission.kind = mission.name == "foraging"           ? missions::Kind::Foraging
+                   : mission.name == "coverage"         ? missions::Kind::Coverage
+                   : mission.name == "grid_exploration" ? missions::Kind::GridExploration
+                                                        : missions::Kind::Aggregation;
+    mission.begin = reader.quantity("begin", Dimension::Time, mission.begin);
+    if (!(mission.begin >= 0.0 && mission.begin <= 1e6))
+        reader.fail("begin", "begin is out of range", "0 s to 1e6 s");
+    mission.step = reader.quantity("step", Dimension::Time, mission.step);
+    if (!(mission.step > 0.0 && mission.step <= 1e6))
+        reader.fail("step", "step is out of range", "more than 0 s, at most 1e6 s");
+    check_multiple(reader, "step", mission.step, period);
+    check_multiple(reader, "begin", mission.begin, period);
+    const bool coverage = mission.kind == missions::Kind::Coverage,
+               grid = mission.kind == missions::Kind::GridExploration,
+               foraging = mission.kind == missions::Kind::Foraging,
+               aggregation = mission.kind == missions::Kind::Aggregation;
+    refuse_unless(reader, "spot", !grid, mission.name);
+    refuse_unless(reader, "nest", foraging, mission.name);
+    refuse_unless(reader, "area", coverage || grid, mission.name);
+    refuse_unless(reader, "cells", grid, mission.name);
+    refuse_unless(reader, "at_end", aggregation, mission.name);
+    for (const TomlValue* spot : reader.tables("spot"))
+        mission.spots.push_back(read_region(reader.file(), "mission.spot", *spot));
+    if ((aggregation || foraging) && mission.spots.empty())
+        reader.fail_missing("spot", "[[mission.spot]] with shape and size or radius");
+    if (foraging) mission.nest = read_needed(reader, "nest");
+    if (coverage || grid) mission.area = read_needed(reader, "area");
+    if (grid) {
+        mission.cells = static_cast<std::size_t>(reader.integer("cells", 10, 1, 1000));
+        if (mission.area.disc) reader.fail("area", "a grid of cells is a rectangle", "shape = \"rectangle\"");
+    }
+    if (aggregation) mission.at_end = reader.flag("at_end", false);
+    reader.finish();
+    return mission;
+}
+
+missions::Mission read_mission_of(const std::filesystem::path& file, double period) {
+    const TomlValue root = read_toml(file);
+    Reader top(file.string(), "", root);
+    std::optional<missions::Mission> mission = read_mission(top, period);
+    if (!mission) throw InputError(file.string(), "", "there is no [mission]", "[mission] with its kind");
+    return *std::move(mission);
+}
+
+}  // namespace puckloop::scenarios
