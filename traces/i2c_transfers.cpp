@@ -45,7 +45,7 @@ void I2cTransfers::add(const TraceRow& row, const I2cPhase& phase) {
         }
         if (link.bus.empty()) link.bus = row.link.substr(0, row.link.rfind('.'));
         request(link, row, phase);
-    } else if (!link.open.empty()) {
+    } else if (!link.open.empty() && row.from != link.open.front().master) {
         link.bus = row.from;
         answer(link, row, phase);
     }

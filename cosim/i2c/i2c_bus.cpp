@@ -129,6 +129,8 @@ void I2cBusNode::phase_from(PortIndex port, const I2cPhase& phase) {
             lose(port, phase);
         break;
     case I2cPhaseKind::Acknowledge:
+        if (owns && phase.ack == 0) not_acknowledged(phase);
+        break;
     case I2cPhaseKind::Data:
     case I2cPhaseKind::BusLost:
         break;
@@ -150,7 +152,7 @@ void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
         return;
     case Bus::Owned:
         if (owner_ == port && !pending_) {
-            release_devices(phase.start);
+            release_devices(phase.start, false);
             address(port, phase, 0);
             return;
         }
@@ -205,13 +207,13 @@ void I2cBusNode::stop_from(PortIndex port, const I2cPhase& phase) {
         changes_ = std::max(changes_, free);
         return;
     }
-    release_devices(phase.start);
+    release_devices(phase.start, true);
     bus_ = Bus::Stopping;
 }
 
 void I2cBusNode::bus_freed() {
     const Time now = changes_;
-    if (bus_ == Bus::Recovering) release_devices(now);
+    if (bus_ == Bus::Recovering) release_devices(now, true);
     bus_ = Bus::Free;
     changes_ = kNever;
     if (begin_incomplete()) return;

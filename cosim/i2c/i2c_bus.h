@@ -25,8 +25,17 @@
 // `ack` of a Read is what the master has decided when it begins; a dsPIC decides later and sends 1. So a
 // device knows that its byte was the last one wanted when a Stop or Start follows it, not before.
 //
+// A chip that is master and device has a port for each (`I2cDevicePort::master`). It may lose the bus with
+// its Start to a master that then addresses it.
+//
 // Several devices at one address answer together: SDA is low when any pulls it low, so their acknowledges are
 // or-ed and their bytes and-ed, and the slowest sets the pace.
+//
+// A master may break what its address byte agreed. Who reads from devices that are to receive sends them
+// ones; who writes to devices that are to send finds SDA the and of both, is acknowledged by nobody, and has
+// lost the bus at its first 1 against a 0: the devices are then in the middle of a byte and hold SDA low. The
+// ninth clock of a byte read may come after it, as an Acknowledge with ack = 0 from the master: the devices
+// send no more until the next START.
 //
 // A master that loses patience sends its Stop while a device still holds SCL low: nobody can use the bus
 // until the device lets go. If it then holds SDA low, being in the middle of a byte, the bus is free once a
@@ -62,6 +71,9 @@ struct I2cDevicePort {
     std::vector<std::uint8_t>
         addresses{};      ///< 7 bits; it is informed of Starts for these only, empty: of all
     bool prompt = false;  ///< never stretches: knows its answer at once
+    /// The master port of the same chip. Its own transfers do not reach the device; of those of others it
+    /// notices every START and every STOP, as the chip's status bits do.
+    std::optional<PortIndex> master{};
 };
 
 struct I2cBusOptions {
@@ -104,7 +116,7 @@ class I2cBusNode final : public Node {
     friend class puckloop::CheckpointReader;
     template <class Archive>
     void state(Archive& archive) {
-        archive(bus_, owner_, addressed_, addressed_devices_, pending_, holders_, crowds_);
+        archive(bus_, owner_, addressed_, addressed_devices_, read_, finished_, pending_, holders_, crowds_);
         archive(stuck_since_, stuck_for_, stuck_names_, changes_, contenders_, waiting_, answers_);
         archive(emitted_at_, counters_, log_, now_, faults_, line_released_, incomplete_byte_);
     }
@@ -172,6 +184,8 @@ class I2cBusNode final : public Node {
     void address(PortIndex port, const I2cPhase& phase, Time earliest);
     void device_answered(PortIndex port, const I2cPhase& phase, Time now);
     void byte_from(PortIndex port, const I2cPhase& phase);
+    void ask_device(I2cSlave& slave, const I2cPhase& seen);
+    void not_acknowledged(const I2cPhase& phase);
     I2cPhase begin_phase(PortIndex port, const I2cPhase& phase, Time earliest, bool& heard);
     void offer_address(const I2cPhase& seen);
     void hold_line(const I2cPhase& phase, Time time);
@@ -182,7 +196,8 @@ class I2cBusNode final : public Node {
     Time next_event() const;
     void take_answer(const I2cAnswer& reply, const std::string& name);
     void settle();
-    void release_devices(Time now);
+    void release_devices(Time now, bool stop_seen);
+    bool own_master(PortIndex device, PortIndex master) const;
     void hang();
     void let_go(const I2cPhase& phase);
     void sda_held();
@@ -219,6 +234,8 @@ class I2cBusNode final : public Node {
     PortIndex owner_ = 0;
     std::vector<I2cSlave*> addressed_;          // devices here
     std::vector<PortIndex> addressed_devices_;  // devices in other nodes
+    bool read_ = false;                         // the last address byte asked them to send
+    bool finished_ = false;  // a byte that they sent was not acknowledged: they wait for a START
     std::optional<Pending> pending_;
     std::vector<PortIndex> holders_;  // of SCL, while the bus is stuck
     std::map<std::uint8_t, Crowd> crowds_;

@@ -10,7 +10,13 @@ namespace {
 constexpr std::uint8_t kReadBit = 1;
 constexpr Time kRecoveryClocks = 10;  // nine for the device, one for the STOP
 constexpr std::uint8_t kFirstBit = 0x80;
+constexpr std::uint8_t kReleased = 0xFF;
 constexpr Time kHalfClocksBeforeAnswer = 15;  // of the sixteen before the ninth clock
+
+/// A general call, and the first byte of a ten-bit address.
+bool is_for_several(std::uint8_t address_byte) {
+    return address_byte == 0 || (address_byte & 0xF8) == 0xF0;
+}
 
 bool contains(const std::vector<std::uint8_t>& list, std::uint8_t value) {
     return std::find(list.begin(), list.end(), value) != list.end();
@@ -27,6 +33,10 @@ Time I2cBusNode::told_after(PortIndex device) const {
            (options_.devices[device - options_.masters.size()].prompt ? kHalfClocksBeforeAnswer : 1);
 }
 
+bool I2cBusNode::own_master(PortIndex device, PortIndex master) const {
+    return options_.devices[device - options_.masters.size()].master == master;
+}
+
 bool I2cBusNode::awaits_devices() const {
     const auto others = [](const std::vector<PortIndex>& ports) {
         return std::any_of(ports.begin(), ports.end(), [](PortIndex port) { return port != kFault; });
@@ -36,6 +46,8 @@ bool I2cBusNode::awaits_devices() const {
 
 void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
     ++counters_.transfers;
+    read_ = (phase.byte & kReadBit) != 0;
+    finished_ = false;
     log_.addressed(now_, port, phase.byte);
     bool heard = true;
     const I2cPhase seen = begin_phase(port, phase, earliest, heard);
@@ -57,6 +69,7 @@ void I2cBusNode::offer_address(const I2cPhase& seen) {
         const auto& addresses = options_.devices[i].addresses;
         if (!addresses.empty() && !contains(addresses, wanted)) continue;
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
+        if (own_master(device, pending_->master)) continue;
         answers_.push_back({std::max(seen.start + told_after(device), pending_->earliest), device, seen});
         pending_->open.push_back(device);
     }
@@ -75,9 +88,32 @@ void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
             answers_.push_back({seen.start + told_after(device), device, seen});
         }
         for (I2cSlave* slave : addressed_)
-            take_answer(write ? slave->write(seen.byte, seen.start) : slave->read(seen.start), {});
+            ask_device(*slave, seen);
+        finished_ = finished_ || (read_ && (write || phase.ack == 0));
     }
     settle();
+}
+
+/// Who sends was agreed with the address, whatever the master does now.
+void I2cBusNode::ask_device(I2cSlave& slave, const I2cPhase& seen) {
+    const bool write = seen.kind == I2cPhaseKind::Write;
+    if (read_ && finished_) return;
+    if (!read_) {
+        I2cAnswer reply = slave.write(write ? seen.byte : kReleased, seen.start);
+        reply.byte = kReleased;
+        return take_answer(reply, {});
+    }
+    I2cAnswer reply = slave.read(seen.start);
+    if (write) reply.acknowledge = false;
+    take_answer(reply, {});
+}
+
+/// The byte read before was the last one, as its master says now.
+void I2cBusNode::not_acknowledged(const I2cPhase& phase) {
+    finished_ = true;
+    for (const PortIndex device : addressed_devices_)
+        if (!options_.devices[device - options_.masters.size()].prompt)
+            answers_.push_back({phase.start + told_after(device), device, phase});
 }
 
 /// One more device has answered what is pending: both lines are low if any device pulls them low.
@@ -95,7 +131,8 @@ void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now
     if (!pending_ || std::erase(pending_->open, port) == 0) return;
     const bool start = pending_->addresses;
     const bool read = pending_->phase.kind == I2cPhaseKind::Read && !start;
-    I2cAnswer reply{phase.ack != 0, read ? phase.byte : std::uint8_t{0xFF}, 0};
+    const bool both_send = read_ && pending_->phase.kind == I2cPhaseKind::Write && !start;
+    I2cAnswer reply{phase.ack != 0, read || both_send ? phase.byte : kReleased, 0};
     const Time ninth = std::max(pending_->phase.clock_period, nominal_period_);
     reply.stretch = std::max<Time>(0, now + ninth - ninth_clock(pending_->phase));
     if (start && reply.acknowledge) addressed_devices_.push_back(port);
@@ -109,7 +146,7 @@ void I2cBusNode::settle() {
     Pending done = *pending_;
     pending_.reset();
     if (done.master == kFault) return go_on_incomplete(done.answer.acknowledge);
-    if (done.count > 1) {
+    if (done.count > 1 && !is_for_several(done.phase.byte)) {
         Crowd& crowd = crowds_[static_cast<std::uint8_t>(done.phase.byte >> 1)];
         ++crowd.times;
         crowd.names = done.who;
@@ -124,15 +161,30 @@ void I2cBusNode::settle() {
         changes_ = std::max(done.busy_until, now_ + nominal_period_);
         return;
     }
+    if (done.phase.kind == I2cPhaseKind::Write && read_ && (done.phase.byte & ~done.answer.byte) != 0) {
+        ++counters_.lost;
+        log_.lost(now_, done.master, done.phase);
+        answer(done.master, done.phase, I2cPhaseKind::BusLost, {false, kReleased, done.answer.stretch},
+               done.earliest);
+        return sda_held();  // nobody clocks the rest of the byte
+    }
     done.answer.byte ^= done.flipped;
     const bool read = done.phase.kind == I2cPhaseKind::Read;
     answer(done.master, done.phase, read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge, done.answer,
            done.earliest);
 }
 
-void I2cBusNode::release_devices(Time now) {
+/// `stop_seen`: by a STOP, which all who watch the bus notice, and not by a START.
+void I2cBusNode::release_devices(Time now, bool stop_seen) {
     I2cPhase stop;
     stop.start = now;
+    for (std::size_t i = 0; i < options_.devices.size(); ++i) {
+        const auto device = static_cast<PortIndex>(options_.masters.size() + i);
+        const bool addressed = std::find(addressed_devices_.begin(), addressed_devices_.end(), device) !=
+                               addressed_devices_.end();
+        if (stop_seen && !addressed && options_.devices[i].master && !own_master(device, owner_))
+            answers_.push_back({now + told_after(device), device, stop});
+    }
     for (const PortIndex device : addressed_devices_)
         answers_.push_back({now + told_after(device), device, stop});
     addressed_devices_.clear();

@@ -132,6 +132,7 @@ void RabNode::show_carrier(int receiver, cosim::Time now) {
 /// Holds what lookahead() guarantees: no answer before that long after the phase came in. A bus that passes a
 /// phase on late, or a master faster than the fastest, moves the phase.
 void RabNode::begin_i2c(cosim::I2cPhase phase, cosim::Time now) {
+    if (phase.kind == cosim::I2cPhaseKind::Acknowledge) return chip_->i2c_slave_phase(kI2cUnit, phase);
     if (phase.kind != cosim::I2cPhaseKind::Stop) {
         phase.clock_period = std::max(phase.clock_period, fastest_period_);
         const cosim::Time earliest = now + lookahead_when_idle() - kClocksToAnswer * phase.clock_period;
