@@ -87,6 +87,10 @@ cosim::Time DspicTarget::next_step(cosim::Time until) {
 }
 
 void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
+    if (phase.kind == cosim::I2cPhaseKind::Acknowledge) {  // of the byte before; nobody is asked
+        if (devices_ && unit == kI2cDeviceUnit) devices_->phase(phase);
+        return;
+    }
     std::optional<cosim::I2cPhase>& open = bus(unit).open;
     if (open) listener_.i2c_phase(unit, *open);
     open.reset();

@@ -84,6 +84,12 @@ void I2cMaster::stop_condition_seen(bool stopped) {
     assign(stat, kI2CxSTAT["S"], !stopped);
 }
 
+/// The next byte follows one that was read and not acknowledged: the slave is to know.
+void I2cMaster::end_byte_read(cosim::Time start) {
+    if (state_.received && !state_.acknowledged) send(I2cPhaseKind::Acknowledge, 0, 0, start);
+    state_.received = false;
+}
+
 void I2cMaster::complete(Cycle at) {
     std::uint16_t& con = reg(kCon);
     std::uint16_t& stat = reg(kStat);
@@ -93,6 +99,7 @@ void I2cMaster::complete(Cycle at) {
         stop_condition_seen(false);
         state_.owns_bus = true;
         state_.address_next = true;
+        state_.received = false;
         break;
     case Activity::Stop:
         stop_condition_seen(true);
@@ -199,6 +206,7 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
     state.buffer_empty = self.around_.now + 1 + self.clocks(kDataClocks);
     self.around_.events.schedule(self.slot_, state.buffer_empty);
     const bool address_byte = state.address_next;
+    if (!address_byte) self.end_byte_read(self.clock_.time_of(self.around_.now + 1));
     state.address_next = false;
     self.address_sent_ = address_byte;
     self.sent_address_ = static_cast<std::uint8_t>(value >> 1 & 0x7F);
@@ -243,6 +251,11 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         return;
     const cosim::Time start = self.clock_.time_of(self.around_.now + 1);
     if (asked & kI2CxCON["SEN"]) {
+        if (!state.owns_bus && self.slave_ && self.slave_->bus_taken()) {  // SDA or SCL is low
+            self.reg(kStat) |= kI2CxSTAT["BCL"];
+            self.around_.interrupts.raise(self.setup_.master_irq, self.around_.now + 1);
+            return;
+        }
         con |= kI2CxCON["SEN"];
         self.begin(Activity::Start, kStartClocks);
     } else if (asked & kI2CxCON["RSEN"]) {
@@ -262,11 +275,14 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             self.begin(Activity::Receive, kDataClocks);
             return;
         }
+        self.end_byte_read(start);
         state.activity = Activity::Receive;
-        state.awaits_answer = true;
+        state.awaits_answer = state.received = true;
+        state.acknowledged = false;
         self.send(I2cPhaseKind::Read, 0, 1, start);
     } else {
         con |= kI2CxCON["ACKEN"];
+        state.acknowledged = !(con & kI2CxCON["ACKDT"]);
         self.begin(Activity::Acknowledge, kAcknowledgeClocks);
     }
 }

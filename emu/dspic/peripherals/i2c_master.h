@@ -11,10 +11,13 @@
 //     A read byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge
 //     that the program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long
 //     as in silicon.
-//  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge by the stop or
-//     repeated start that follows.
+//  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge, or that no
+//     acknowledge was given, by the stop, repeated start or byte that follows. A byte without its ninth clock
+//     is not acknowledged and costs a clock less; the bits behind it are not out of step.
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  5. Transmitting without a start condition reaches nobody: not acknowledged.
+//  6. A start condition while another master's transfer is under way is a collision (BCL) at once, also at an
+//     instant at which both lines happen to be high.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
@@ -75,13 +78,16 @@ class I2cMaster {
         bool address_next = false;  ///< the next byte follows a (repeated) start
         bool awaits_answer = false;
         bool stop_when_answered = false;  ///< switched off meanwhile
+        bool received = false;            ///< a byte, since the address ...
+        bool acknowledged = false;        ///< ... by ACKEN, the newest
         Cycle buffer_empty = kNoCycle;
         Cycle ends = kNoCycle;  ///< of an activity that needs no answer
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(activity, Activity::Idle, Activity::Acknowledge);
-            archive(owns_bus, address_next, awaits_answer, stop_when_answered, buffer_empty, ends);
+            archive(owns_bus, address_next, awaits_answer, stop_when_answered, received, acknowledged,
+                    buffer_empty, ends);
         }
     };
 
@@ -95,6 +101,7 @@ class I2cMaster {
     Cycle clocks(double count) const;
     void begin(Activity activity, double duration_clocks);
     void send(cosim::I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cosim::Time start);
+    void end_byte_read(cosim::Time start);
     void complete(Cycle at);
     void stop_condition_seen(bool stopped);
     void switch_off();

@@ -78,20 +78,21 @@ bool I2cSlave::matches_second_of_ten(std::uint8_t byte) const {
 }
 
 void I2cSlave::phase(const I2cPhase& phase, Cycle at) {
+    if (state_.ended_due != kNoCycle) not_acknowledged();
     switch (phase.kind) {
     case I2cPhaseKind::Start:
         start(phase);
         break;
     case I2cPhaseKind::Write:
-        open(phase);
-        break;
     case I2cPhaseKind::Read:
-        read(phase, at);
+        byte(phase, at);
         break;
     case I2cPhaseKind::Stop:
         stop();
         break;
-    case I2cPhaseKind::Acknowledge:
+    case I2cPhaseKind::Acknowledge:  // the ninth clock of the byte before, where that was not known then
+        if (phase.ack == 0) not_acknowledged();
+        break;
     case I2cPhaseKind::Data:
     case I2cPhaseKind::BusLost:
         break;
@@ -109,17 +110,18 @@ void I2cSlave::open(const I2cPhase& phase) {
 }
 
 void I2cSlave::start(const I2cPhase& phase) {
+    end_byte_sent();
     std::uint16_t& stat = reg(kStat);
     if (reg(kCon) & kI2CxCON["I2CEN"]) {
         assign(stat, kI2CxSTAT["S"], true);
         assign(stat, kI2CxSTAT["P"], false);
     }
+    state_.taken = reg(kCon) & kI2CxCON["I2CEN"];
     state_.addressed = matches(phase.byte);
     state_.sends = phase.byte & 1;
     state_.byte_sent = false;
     state_.shown_due = kNoCycle;
     state_.half = state_.addressed && ten_bits() && phase.byte != 0 && !state_.sends;
-    if (!state_.addressed || state_.half) state_.whole = false;
     open(phase);
     if (!state_.addressed || state_.half) return;
     state_.shown_due = clock_.first_cycle_at(phase.start + clocks(phase, kByteClocks));
@@ -127,13 +129,15 @@ void I2cSlave::start(const I2cPhase& phase) {
     state_.shown = phase.byte;
 }
 
-void I2cSlave::read(const I2cPhase& phase, Cycle at) {
+/// Who sends and who receives was agreed with the address; a master that does not keep to it finds the slave
+/// sending while it sends, or receiving ones while it reads.
+void I2cSlave::byte(const I2cPhase& phase, Cycle at) {
     if (!transmitting()) return open(phase);
     state_.open = phase;
     state_.released = phase.start;
     state_.step_due = kNoCycle;
     if (state_.byte_sent) {  // the byte before was acknowledged
-        hold_clock();
+        wait_for_byte();
         around_.interrupts.raise(setup_.slave_irq, at);
     }
     // Until the address is shown SCLREL still reads as before it.
@@ -143,7 +147,21 @@ void I2cSlave::read(const I2cPhase& phase, Cycle at) {
         state_.step = Step::Hold;
 }
 
+/// SDA is high in the ninth clock of a byte sent: the transfer is over for the slave, until the next START.
+void I2cSlave::not_acknowledged() {
+    state_.ended_due = kNoCycle;
+    if (!transmitting()) return;
+    state_.addressed = false;
+    assign(reg(kStat), kI2CxSTAT["TBF"], false);
+}
+
+/// A START or STOP right behind a byte sent: it was the last one (deviation 2).
+void I2cSlave::end_byte_sent() {
+    if (state_.byte_sent && state_.step == Step::None) not_acknowledged();
+}
+
 void I2cSlave::stop() {
+    end_byte_sent();
     std::uint16_t& stat = reg(kStat);
     if (reg(kCon) & kI2CxCON["I2CEN"]) {
         assign(stat, kI2CxSTAT["S"], false);
@@ -151,15 +169,21 @@ void I2cSlave::stop() {
         assign(stat, kI2CxSTAT["GCSTAT"], false);
         assign(stat, kI2CxSTAT["ADD10"], false);
     }
-    state_.half = state_.whole = false;
+    state_.taken = state_.half = state_.whole = false;
     if (transmitting()) assign(reg(kCon), kI2CxCON["SCLREL"], true);
-    state_.addressed = false;
+    state_.addressed = state_.byte_sent = false;
+    if (state_.step != Step::None) state_.shown_due = kNoCycle;  // in the middle of a byte
     state_.step = Step::None;
     state_.step_due = kNoCycle;
 }
 
 void I2cSlave::hold_clock() {
     assign(reg(kCon), kI2CxCON["SCLREL"], false);
+}
+
+/// SCL is held for a byte to send, unless the program has put one into I2CxTRN already (DS70150E, 17.5.1).
+void I2cSlave::wait_for_byte() {
+    if (!(reg(kStat) & kI2CxSTAT["TBF"])) hold_clock();
 }
 
 // Puts a byte into I2CxRCV, status with it, and asks for service.
@@ -176,7 +200,7 @@ void I2cSlave::show(bool address, std::uint8_t byte, Cycle at) {
         assign(stat, kI2CxSTAT["R_W"], state_.sends);
         assign(stat, kI2CxSTAT["GCSTAT"], byte == 0 && !state_.whole);
         assign(stat, kI2CxSTAT["ADD10"], state_.whole);
-        if (state_.sends && state_.addressed) hold_clock();
+        if (state_.sends && state_.addressed) wait_for_byte();
     }
     around_.interrupts.raise(setup_.slave_irq, at);
 }
@@ -206,17 +230,21 @@ void I2cSlave::answer(Time stretch, bool acknowledge, std::uint8_t byte) {
 void I2cSlave::eighth_clock(Cycle at) {
     const Time eighth = state_.open.start + clocks(state_.open, kAnswerClocks);
     const Time late = std::max<Time>(0, clock_.time_of(at) - eighth);
-    const bool is_data = state_.open.kind == I2cPhaseKind::Write && !state_.sends;
     const bool is_address = state_.open.kind == I2cPhaseKind::Start;
-    state_.acknowledge = state_.addressed && (is_data || is_address) && !(reg(kStat) & kI2CxSTAT["RBF"]);
+    const bool is_data = !is_address && !state_.sends;
+    const std::uint8_t received = state_.open.kind == I2cPhaseKind::Read ? kIdleLine : state_.open.byte;
+    const bool overrun = reg(kStat) & (kI2CxSTAT["RBF"] | kI2CxSTAT["I2COV"]);
+    state_.acknowledge = state_.addressed && (is_data || is_address) && !overrun;
+    // Only a read by the first byte again keeps what both bytes addressed.
+    if (is_address && !(state_.addressed && ten_bits() && state_.sends)) state_.whole = false;
     if (is_data && state_.half) {  // the rest of a 10-bit address
         state_.half = false;
-        state_.whole = state_.acknowledge = state_.acknowledge && matches_second_of_ten(state_.open.byte);
+        state_.whole = state_.acknowledge = state_.acknowledge && matches_second_of_ten(received);
         state_.addressed = state_.whole;
         if (state_.whole) {
             state_.shown_due = clock_.first_cycle_at(state_.open.start + clocks(state_.open, kByteClocks));
             state_.shows_address = true;
-            state_.shown = state_.open.byte;
+            state_.shown = received;
         }
         return answer(late, state_.acknowledge, kIdleLine);
     }
@@ -225,11 +253,11 @@ void I2cSlave::eighth_clock(Cycle at) {
             state_.step = Step::Stretch;
             state_.step_due = kNoCycle;
             hold_clock();
-            return show(false, state_.open.byte, at);
+            return show(false, received, at);
         }
         state_.shown_due = clock_.first_cycle_at(state_.open.start + clocks(state_.open, kByteClocks));
         state_.shows_address = false;
-        state_.shown = state_.open.byte;
+        state_.shown = received;
     }
     if (is_address && !state_.acknowledge) state_.addressed = false;
     answer(late, state_.acknowledge, kIdleLine);
@@ -241,7 +269,12 @@ void I2cSlave::due(void* owner, Cycle due) {
     if (state.step_due <= due && state.step == Step::Shift) {
         assign(self.reg(kStat), kI2CxSTAT["TBF"], false);
         state.byte_sent = true;
-        self.answer(state.released - state.open.start, true, static_cast<std::uint8_t>(self.reg(kTrn)));
+        const bool writes = state.open.kind == I2cPhaseKind::Write;  // both send: SDA is the and of it
+        const auto sent = static_cast<std::uint8_t>(self.reg(kTrn) & (writes ? state.open.byte : kIdleLine));
+        const bool goes_on = !writes && state.open.ack != 0;
+        self.answer(state.released - state.open.start, !writes, sent);
+        if (!goes_on)
+            state.ended_due = self.clock_.first_cycle_at(state.released + clocks(state.open, kByteClocks));
     } else if (state.step_due <= due && state.step == Step::Answer) {
         self.eighth_clock(due);
     }
@@ -249,11 +282,12 @@ void I2cSlave::due(void* owner, Cycle due) {
         state.shown_due = kNoCycle;
         self.show(state.shows_address, state.shown, due);
     }
+    if (state.ended_due <= due) self.not_acknowledged();
     self.plan();
 }
 
 void I2cSlave::plan() {
-    around_.events.schedule(slot_, std::min(state_.step_due, state_.shown_due));
+    around_.events.schedule(slot_, std::min({state_.step_due, state_.shown_due, state_.ended_due}));
 }
 
 void I2cSlave::load(std::uint16_t value) {
