@@ -1,5 +1,7 @@
 #include "emu/avr/peripherals/twi.h"
 
+#include <utility>
+
 namespace puckloop::avr {
 
 namespace {
@@ -25,6 +27,7 @@ constexpr std::uint8_t kStAddress = 0xA8, kStDataAck = 0xB8, kStDataNack = 0xC0,
 /// Addressed after arbitration was lost; a bus error.
 constexpr std::uint8_t kLostSrAddress = 0x68, kLostSrGeneral = 0x78, kLostStAddress = 0xB0, kBusError = 0x00;
 constexpr int kAnswerClocks = 8;
+constexpr std::uint8_t kReleased = 0xFF;  // a byte that nobody drives
 constexpr unsigned kAddresses = 128;
 
 }  // namespace
@@ -259,14 +262,15 @@ void Twi::due(void* owner, Cycle cycle) {
 // ---- slave
 
 bool Twi::addressed(std::uint8_t address_byte, bool& general_call) const {
-    if (!(control() & kTwen) || !(control() & kTwea)) return false;
+    if (!(control() & kTwen)) return false;
+    if (state_code() == kBusError && (control() & kTwint)) return false;
     const std::uint8_t own = around_.io.raw(kTwar), ignored = around_.io.raw(kTwamr);
     general_call = address_byte == 0 && (own & kTwgce);
     return general_call || (((address_byte ^ own) & 0xFE & ~ignored) == 0);
 }
 
-Cycle Twi::slave_clocks(int clocks) const {
-    const cosim::Time span = static_cast<cosim::Time>(clocks) * state_.phase.clock_period;
+Cycle Twi::slave_clocks(int clocks, const cosim::I2cPhase& phase) const {
+    const cosim::Time span = static_cast<cosim::Time>(clocks) * phase.clock_period;
     return clock_.first_cycle_at(clock_.time_of(around_.now) + span) - around_.now;
 }
 
@@ -275,9 +279,12 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
         around_.events.cancel(slot_);
         due(this, around_.now);
     }
+    if (phase.kind == Kind::Acknowledge) return;  // the masters of this unit state it with the Read
     const bool was_slave = state_.slave;
     const bool ends = phase.kind == Kind::Stop || phase.kind == Kind::Start;
     state_.lost = false;
+    const bool in_address = around_.now < std::exchange(state_.address_ends, Cycle{0});
+    if (ends && (in_address || state_.step == Step::SlaveAnswer)) return bus_error(phase);
     if (state_.awaiting && ends) {
         state_.awaiting = state_.owner = false;
         around_.events.cancel(slot_);
@@ -300,16 +307,17 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
         state_.stop_waits = hears_stop && (control() & kTwint);
         if (hears_stop && !state_.stop_waits) interrupt(kSrStop);
         if (phase.kind == Kind::Stop) return bus_free();
-        state_.slave = addressed(phase.byte, state_.general_call);
+        // TWEA counts when the byte is over; a program that serves the STOP before has until then.
+        state_.slave = addressed(phase.byte, state_.general_call) &&
+                       ((control() & kTwea) || state_.stop_waits || hears_stop);
+        state_.sends = phase.byte & kRead;
         if (state_.lost && !state_.slave) interrupt(kLost);
+        if ((control() & kTwen) && !state_.slave)
+            state_.address_ends = around_.now + slave_clocks(kAnswerClocks, phase);
     }
     state_.phase = phase;
     if (!state_.slave) {
-        cosim::I2cPhase nobody = phase;
-        nobody.kind = phase.kind == Kind::Read ? Kind::Data : Kind::Acknowledge;
-        nobody.byte = 0xFF;
-        nobody.ack = 0;
-        pins_.twi_slave_answer(nobody);
+        refuse(phase);
         return;
     }
     // SCL is held low as long as TWINT is set.
@@ -328,7 +336,7 @@ void Twi::begin_slave_phase() {
     state_.slave_waits = false;
     const cosim::Time late = clock_.time_of(around_.now) - state_.phase.start;
     state_.phase.stretch = late > 0 ? late : 0;
-    plan(Step::SlaveAnswer, around_.now + slave_clocks(kAnswerClocks));
+    plan(Step::SlaveAnswer, around_.now + slave_clocks(kAnswerClocks, state_.phase));
 }
 
 void Twi::finish_slave_phase(Cycle now) {
@@ -336,6 +344,7 @@ void Twi::finish_slave_phase(Cycle now) {
     answer.kind = Kind::Acknowledge;
     switch (state_.phase.kind) {
     case Kind::Start:
+        if (!(control() & kTwea)) return refuse_address();
         answer.ack = 1;
         data() = state_.phase.byte;
         state_.next_status = state_.general_call           ? kSrGeneral
@@ -346,20 +355,56 @@ void Twi::finish_slave_phase(Cycle now) {
                                  : (state_.phase.byte & kRead) ? kLostStAddress
                                                                : kLostSrAddress;
         break;
-    case Kind::Write:
-        answer.ack = control() & kTwea ? 1 : 0;
-        data() = state_.phase.byte;
-        state_.next_status = state_.general_call ? (answer.ack ? kSrGeneralAck : kSrGeneralNack)
-                                                 : (answer.ack ? kSrDataAck : kSrDataNack);
-        break;
     default:
-        answer.kind = Kind::Data;
-        answer.byte = data();
-        state_.next_status = !state_.phase.ack ? kStDataNack : (control() & kTwea) ? kStDataAck : kStLastAck;
+        finish_slave_byte(answer);
         break;
     }
     pins_.twi_slave_answer(answer);
-    plan(Step::SlavePhaseOver, now + slave_clocks(1));
+    plan(Step::SlavePhaseOver, now + slave_clocks(1, state_.phase));
+}
+
+/// Who sends was agreed with the address, whatever the master does.
+void Twi::finish_slave_byte(cosim::I2cPhase& answer) {
+    const bool writes = state_.phase.kind == Kind::Write;
+    if (!writes) answer.kind = Kind::Data;
+    if (!state_.sends) {
+        answer.ack = control() & kTwea ? 1 : 0;
+        data() = answer.byte = writes ? state_.phase.byte : kReleased;
+        state_.next_status = state_.general_call ? (answer.ack ? kSrGeneralAck : kSrGeneralNack)
+                                                 : (answer.ack ? kSrDataAck : kSrDataNack);
+        return;
+    }
+    const bool acknowledged = !writes && state_.phase.ack;  // who writes leaves SDA high in the ninth clock
+    answer.byte = static_cast<std::uint8_t>(data() & (writes ? state_.phase.byte : kReleased));
+    if (writes) answer.ack = 0;
+    state_.next_status = !acknowledged ? kStDataNack : (control() & kTwea) ? kStDataAck : kStLastAck;
+}
+
+/// A START or STOP in the middle of a byte of ours. TWSTO has to be set before the unit takes part again.
+void Twi::bus_error(const cosim::I2cPhase& phase) {
+    around_.events.cancel(slot_);
+    state_.step = Step::None;
+    state_.slave = state_.slave_waits = state_.stop_waits = false;
+    state_.bus_taken = phase.kind == Kind::Start;
+    interrupt(kBusError);
+    if (phase.kind == Kind::Stop) return bus_free();
+    refuse(phase);
+}
+
+/// TWEA was cleared before the own address was over.
+void Twi::refuse_address() {
+    state_.slave = false;
+    refuse(state_.phase);
+    if (state_.lost) interrupt(kLost);
+    if (control() & kTwsta) state_.start_waits = state_.bus_taken;
+}
+
+/// Nobody is here.
+void Twi::refuse(cosim::I2cPhase phase) {
+    phase.kind = phase.kind == Kind::Read ? Kind::Data : Kind::Acknowledge;
+    phase.byte = kReleased;
+    phase.ack = 0;
+    pins_.twi_slave_answer(phase);
 }
 
 }  // namespace puckloop::avr

@@ -7,7 +7,11 @@
 //  2. Arbitration is the bus's, and decided phase by phase: a lost one comes back as BusLost (status 0x38).
 //     Lost in the address, the winner's START comes in by slave_phase() first: the unit may be who it speaks
 //     to (0x68, 0x78, 0xB0).
-//  3. A STOP or START of another master in the middle of a phase of ours is a bus error (0x00) at once.
+//  3. A byte read from a slave that is to receive is received as ones, with the acknowledge that TWEA asks
+//     for; one written to a slave that is to send is the and of both, and not acknowledged.
+//  4. A START or STOP in the middle of an address byte, or of a byte of ours, is a bus error (0x00); other
+//     units' data bytes are not followed.
+//  5. A STOP or START of another master in the middle of a phase of ours is a bus error (0x00) at once.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
@@ -62,18 +66,20 @@ class Twi {
         cosim::I2cPhase phase;   ///< ours, or the master's that addresses us
         cosim::I2cPhase answer;  ///< to ours, for Step::Answer
         bool slave = false;      ///< addressed
+        bool sends = false;      ///< to send
         bool general_call = false;
         bool slave_waits = false;  ///< the master's phase waits for TWINT to be cleared
         bool stop_waits = false;   ///< so does its STOP or repeated START
         bool bus_taken = false;    ///< another master is between START and STOP
         bool start_waits = false;  ///< for the bus to be free
+        Cycle address_ends = 0;    ///< of an address byte that is not ours
         bool lost = false;         ///< arbitration, to the master that now speaks to us
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(step, Step::None, Step::Answer);
-            archive(owner, awaiting, next_status, phase, answer, slave, general_call, slave_waits, stop_waits,
-                    bus_taken, start_waits, lost);
+            archive(owner, awaiting, next_status, phase, answer, slave, sends, general_call, slave_waits,
+                    stop_waits, bus_taken, start_waits, address_ends, lost);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0xBC); }
@@ -92,7 +98,11 @@ class Twi {
     bool addressed(std::uint8_t address_byte, bool& general_call) const;
     void begin_slave_phase();
     void finish_slave_phase(Cycle now);
-    Cycle slave_clocks(int clocks) const;
+    void finish_slave_byte(cosim::I2cPhase& answer);
+    void refuse(cosim::I2cPhase phase);
+    void refuse_address();
+    void bus_error(const cosim::I2cPhase& phase);
+    Cycle slave_clocks(int clocks, const cosim::I2cPhase& phase) const;
 
     static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_status(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
