@@ -14,6 +14,12 @@ using cosim::Time;
 namespace {
 constexpr std::uint32_t kNobody = UINT32_MAX;
 constexpr std::size_t kBlockMaximum = 32;  // SMBus block length
+constexpr std::uint8_t kReadBit = 1;
+
+/// 11110, the upper two bits, "write".
+std::uint8_t first_of_ten(const I2cMessage& message) {
+    return static_cast<std::uint8_t>(0xF0 | (message.address >> 7 & 6));
+}
 }  // namespace
 
 void I2cAdapter::submit(I2cTransfer transfer, Time now) {
@@ -59,9 +65,19 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
             timeout_at_ = cosim::later(next_, transfer.timeout);
             byte_ = 0;
             addressed_ = false;
+            address_bytes_ = 0;
             length_ = message.read ? message.length : message.data.size();
-            begun.push_back(phase(I2cPhaseKind::Start,
-                                  static_cast<std::uint8_t>(message.address << 1 | (message.read ? 1 : 0))));
+            const auto seven = static_cast<std::uint8_t>(message.address << 1 | (message.read ? 1 : 0));
+            begun.push_back(phase(I2cPhaseKind::Start, message.ten_bits ? first_of_ten(message) : seven));
+            step_ = Step::Waiting;
+            next_ = timeout_at_;
+        } else if (step_ == Step::SecondAddress || step_ == Step::ReadAgain) {
+            const I2cMessage& message = transfer.messages[message_];
+            if (step_ == Step::SecondAddress)
+                begun.push_back(phase(I2cPhaseKind::Write, static_cast<std::uint8_t>(message.address)));
+            else
+                begun.push_back(
+                    phase(I2cPhaseKind::Start, static_cast<std::uint8_t>(first_of_ten(message) | kReadBit)));
             step_ = Step::Waiting;
             next_ = timeout_at_;
         } else if (step_ == Step::Byte) {
@@ -102,6 +118,14 @@ void I2cAdapter::fail(int error, Time now, bool owns_bus) {
     next_ = now;
 }
 
+/// Whether more of a ten-bit address is to follow.
+bool I2cAdapter::goes_on_addressing(const I2cMessage& message, Time now) {
+    if (addressed_ || !message.ten_bits || address_bytes_ == (message.read ? 2 : 1)) return false;
+    step_ = address_bytes_++ == 0 ? Step::SecondAddress : Step::ReadAgain;
+    next_ = now;
+    return true;
+}
+
 void I2cAdapter::after_byte(Time now) {
     next_ = now;
     if (byte_ < length_) {
@@ -120,7 +144,7 @@ void I2cAdapter::deliver(const I2cPhase& answer, Time now) {
     case I2cPhaseKind::Acknowledge:
         if (answer.ack == 0) {
             fail(nack_error_, now, true);
-        } else {
+        } else if (!goes_on_addressing(message, now)) {
             if (addressed_) ++byte_;
             addressed_ = true;
             after_byte(now);
@@ -156,6 +180,8 @@ Time I2cAdapter::next_completion() const {
         return cosim::later(next_, period_);
     case Step::Start:  // it then waits for an answer
         return cosim::later(next_, queue_.front().timeout);
+    case Step::SecondAddress:
+    case Step::ReadAgain:
     case Step::Byte:
         return timeout_at_;
     case Step::Idle:

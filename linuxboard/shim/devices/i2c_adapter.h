@@ -7,7 +7,10 @@
 //
 // Deviations: 1. One byte is one phase: no bus clock jitter, no driver overhead between bytes.
 // 2. After BusLost the transfer fails with EAGAIN at once; the driver's own retries are not modelled.
-// 3. No ten-bit addresses, no SMBus PEC, no alert.
+// 3. No SMBus PEC, no alert.
+//
+// A ten-bit address takes two bytes: 11110, two bits and "write", then the other eight; a read goes on with a
+// repeated START and the first byte with "read" (UM10204, 3.1.11).
 
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
@@ -20,11 +23,12 @@
 namespace puckloop::linuxboard {
 
 struct I2cMessage {
-    std::uint16_t address = 0;  ///< 7 bits
+    std::uint16_t address = 0;  ///< 7 bits, or 10
     bool read = false;
     bool counted = false;  ///< the first byte read gives how many follow (SMBus block read)
     std::string data;      ///< to write
     std::uint16_t length = 0;
+    bool ten_bits = false;  ///< of the address
 };
 
 struct I2cTransfer {
@@ -70,9 +74,10 @@ class I2cAdapter {
     std::uint64_t failures() const { return failures_; }
 
   private:
-    enum class Step { Idle, Start, Byte, Stop, Finish, Waiting };
+    enum class Step { Idle, Start, SecondAddress, ReadAgain, Byte, Stop, Finish, Waiting };
 
     void begin_next(cosim::Time now);
+    bool goes_on_addressing(const I2cMessage& message, cosim::Time now);
     void after_byte(cosim::Time now);
     void fail(int error, cosim::Time now, bool owns_bus);
     cosim::I2cPhase phase(cosim::I2cPhaseKind kind, std::uint8_t byte = 0) const;
@@ -88,6 +93,7 @@ class I2cAdapter {
     std::size_t message_ = 0;
     std::size_t byte_ = 0;
     bool addressed_ = false;
+    int address_bytes_ = 0;  // acknowledged, of a ten-bit address
     std::size_t length_ = 0;
     I2cResult result_;
     std::vector<I2cResult> results_;

@@ -314,6 +314,7 @@ void BoardKernel::submit_transfer(const Request& request, std::string_view data)
         const auto segment = read_object<wire::I2cSegment>(data);
         I2cMessage message;
         message.address = segment.address;
+        message.ten_bits = (segment.flags & I2C_M_TEN) != 0;
         message.read = (segment.flags & I2C_M_RD) != 0;
         message.counted = (segment.flags & I2C_M_RECV_LEN) != 0;
         message.length = segment.length;

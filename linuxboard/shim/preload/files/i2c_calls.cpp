@@ -35,7 +35,7 @@ int check(const OpenFile& file, const i2c_msg* messages, unsigned count) {
         const i2c_msg& message = messages[i];
         if (message.len == 0) return fail(EINVAL);
         // i2c-omap does not know I2C_M_RECV_LEN: it reads as many bytes as the message has.
-        constexpr int kKnown = I2C_M_RD | I2C_M_RECV_LEN;
+        constexpr int kKnown = I2C_M_RD | I2C_M_RECV_LEN | I2C_M_TEN;
         if ((message.flags & ~kKnown) != 0) {
             note("%s: I2C message flags 0x%x are not supported", file.path, message.flags);
             return fail(EOPNOTSUPP);
@@ -89,8 +89,8 @@ int transfer(OpenFile& file, i2c_msg* messages, unsigned count) {
     for (unsigned i = 0; i < count; ++i) {
         const i2c_msg& message = messages[i];
         const bool reads = (message.flags & I2C_M_RD) != 0;
-        const wire::I2cSegment segment{message.addr, static_cast<std::uint16_t>(message.flags & I2C_M_RD),
-                                       message.len};
+        const wire::I2cSegment segment{
+            message.addr, static_cast<std::uint16_t>(message.flags & (I2C_M_RD | I2C_M_TEN)), message.len};
         data.append(reinterpret_cast<const char*>(&segment), sizeof segment);
         if (!reads) data.append(reinterpret_cast<const char*>(message.buf), message.len);
         if (reads) answer.resize(answer.size() + message.len);
@@ -114,28 +114,19 @@ int transfer(OpenFile& file, i2c_msg* messages, unsigned count) {
     return done;
 }
 
-/// With a ten-bit address, which the adapter's model does not know.
-static bool ten_bit_refused(const OpenFile& file) {
-    if (!file.ten_bit) return false;
-    note("%s: ten-bit I2C addresses are not supported", file.path);
-    errno = EOPNOTSUPP;
-    return true;
-}
-
 std::int64_t read_i2c(OpenFile& file, void* buffer, std::size_t size) {
-    if (ten_bit_refused(file)) return -1;
     std::string data(std::min(size, kMostMessageBytes), '\0');
-    i2c_msg message{file.slave, I2C_M_RD, static_cast<__u16>(data.size()),
-                    reinterpret_cast<__u8*>(data.data())};
+    i2c_msg message{file.slave, static_cast<__u16>(I2C_M_RD | address_flags(file)),
+                    static_cast<__u16>(data.size()), reinterpret_cast<__u8*>(data.data())};
     if (transfer(file, &message, 1) < 0) return -1;
     return copy_to_program(buffer, data.data(), data.size()) ? message.len : -1;
 }
 
 std::int64_t write_i2c(OpenFile& file, const void* data, std::size_t size) {
-    if (ten_bit_refused(file)) return -1;
     std::string copy(std::min(size, kMostMessageBytes), '\0');
     if (!copy_from_program(copy.data(), data, copy.size())) return -1;
-    i2c_msg message{file.slave, 0, static_cast<__u16>(copy.size()), reinterpret_cast<__u8*>(copy.data())};
+    i2c_msg message{file.slave, address_flags(file), static_cast<__u16>(copy.size()),
+                    reinterpret_cast<__u8*>(copy.data())};
     return transfer(file, &message, 1) < 0 ? -1 : message.len;
 }
 
@@ -158,7 +149,7 @@ int i2c_ioctl(OpenFile& file, unsigned long request, void* argument, const void*
     case I2C_RDWR:
         return rdwr(file, argument);
     case I2C_SMBUS:
-        return ten_bit_refused(file) ? -1 : smbus_ioctl(file, argument);
+        return smbus_ioctl(file, argument);
     case I2C_RETRIES:  // the driver retries lost arbitration only, which fails at once here
         return value > INT_MAX ? fail(EINVAL) : 0;
     case I2C_TIMEOUT:

@@ -11,6 +11,11 @@ namespace puckloop::shim {
 /// i2c-dev takes messages of so many bytes.
 inline constexpr std::size_t kMostMessageBytes = 8192;
 
+/// Of messages to the file's slave: I2C_M_TEN after the ioctl I2C_TENBIT.
+inline __u16 address_flags(const OpenFile& file) {
+    return file.ten_bit ? I2C_M_TEN : 0;
+}
+
 /// One or several messages whose buffers are this library's; number of messages done, or -1 and errno.
 int transfer(OpenFile& file, i2c_msg* messages, unsigned count);
 

@@ -75,8 +75,8 @@ struct Messages {
 int make_messages(const OpenFile& file, bool reads, __u32 size, __u8 command, const i2c_smbus_data& data,
                   Messages& made) {
     made.out[0] = command;
-    made.list[0] = {file.slave, 0, 1, made.out};
-    made.list[1] = {file.slave, I2C_M_RD, 0, made.in};
+    made.list[0] = {file.slave, address_flags(file), 1, made.out};
+    made.list[1] = {file.slave, static_cast<__u16>(I2C_M_RD | address_flags(file)), 0, made.in};
     const auto read_after = [&made](unsigned length) {
         made.list[1].len = static_cast<__u16>(length);
         made.count = 2;
