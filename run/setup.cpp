@@ -6,6 +6,7 @@
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/board.h"
 #include "emu/pic/signals.h"
+#include "emu/pic/slave_address.h"
 #include "emu/rab_board/signals.h"
 #include "physics/description/channels.h"
 #include "run/control/control_place.h"
@@ -39,11 +40,18 @@ bool has_lsm330(const RobotBoards& robot) {
     return robot.pic.revision == pic::name_of(pic::Revision::Rev13);
 }
 
+/// Where no other master is, nobody can address the main board.
+bool is_i2c_slave(const RobotBoards& robot) {
+    if (!robot.linux_board) return false;
+    if (robot.pic.i2c_slave) return *robot.pic.i2c_slave;
+    return pic::sets_slave_address(full_path(robot.pic.firmware).string());
+}
+
 std::string path_text(const std::filesystem::path& path) {
     return path.empty() ? "" : full_path(path).string();
 }
 
-MainBoard main_board(const RunSetup& setup, const RobotBoards& robot) {
+MainBoard main_board(const RunSetup& setup, const RobotBoards& robot, bool i2c_slave) {
     const Scenario& scenario = setup.scenario;
     pic::PicSpec spec{.name = robot.name + ".pic",
                       .firmware = full_path(robot.pic.firmware).string(),
@@ -56,11 +64,14 @@ MainBoard main_board(const RunSetup& setup, const RobotBoards& robot) {
                       .errata = robot.pic.errata,
                       .bluetooth = robot.pic.bluetooth.has_value(),
                       .ircom = scenario.world.ircom,
+                      .i2c_slave = i2c_slave,
                       .can = can_modules(scenario, robot.name + ".pic"),
                       .nvm = path_text(robot.pic.nvm),
                       .log = log_of(setup, robot.name + ".pic")};
     if (spec.ircom && !robot.pic.adc_noise_given) spec.phototransistor_noise = pic::kPhototransistorNoise;
-    return {std::move(spec)};
+    MainBoard board{std::move(spec)};
+    if (i2c_slave) board.i2c_hertz = scenario.i2c_clock;
+    return board;
 }
 
 rab::RabSpec rab_spec(const RunSetup& setup, const RobotBoards& robot) {
@@ -76,7 +87,7 @@ rab::RabSpec rab_spec(const RunSetup& setup, const RobotBoards& robot) {
             .log = log_of(setup, robot.name + ".rab")};
 }
 
-i2c_devices::BusSpec bus_spec(const RunSetup& setup, const RobotBoards& robot) {
+i2c_devices::BusSpec bus_spec(const RunSetup& setup, const RobotBoards& robot, bool main_board_is_slave) {
     i2c_devices::BusSpec spec;
     spec.name = robot.name + ".i2c";
     spec.ground_sensor = robot.ground_sensor;
@@ -87,6 +98,7 @@ i2c_devices::BusSpec bus_spec(const RunSetup& setup, const RobotBoards& robot) {
     spec.log = log_of(setup, robot.name + ".i2c");
     // The board hears every START: its firmware decides which address is its own.
     if (robot.rab) spec.boards.push_back({"rab"});
+    if (main_board_is_slave) spec.boards.push_back({.name = "main_board", .main_board = true});
     if (!robot.pic.camera.empty()) spec.boards.push_back({"camera", camera::kI2cAddress, true});
     return spec;
 }
@@ -142,10 +154,14 @@ void add_robot(RunSetup& setup, std::size_t index, const RunRequest& request) {
     const RobotBoards& robot = setup.scenario.robots[index];
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
-    MainBoard board = main_board(setup, robot);
+    const bool i2c_slave = is_i2c_slave(robot);
+    if (robot.pic.i2c_slave.value_or(false) && !i2c_slave)
+        setup.warnings.push_back(
+            fmt::format("{}: i2c_slave without a Linux board: nobody addresses the main board", robot.name));
+    MainBoard board = main_board(setup, robot, i2c_slave);
     add_board_camera(setup, index, board);
     add_free(setup, pic, std::move(board));
-    add_free(setup, bus, bus_spec(setup, robot));
+    add_free(setup, bus, bus_spec(setup, robot, i2c_slave));
     cosim::LinkSpec world{robot.name + ".world", {pic, "world"}, {"world", robot.name + ".board"}};
     world.signal_names = names_of(pic::signals());
     world.record_from_b = false;  // a thousand sensor values a second: in the hash, not in the file
@@ -155,6 +171,8 @@ void add_robot(RunSetup& setup, std::size_t index, const RunRequest& request) {
     ground.record_from_b = false;
     setup.links.push_back(ground);
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
+    if (i2c_slave)
+        setup.links.push_back({robot.name + ".i2c.main_board", {pic, "i2c_slave"}, {bus, "main_board"}});
     add_uarts(setup, robot, request);
     add_rab(setup, robot);
     add_linux(setup, index, request);

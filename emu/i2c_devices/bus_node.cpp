@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kSlowest = 1e3;  // Hz
 constexpr double kFastest = 3.4e6;
-constexpr int kHighestAddress = 0x77;  // 7-bit addresses above are reserved
+constexpr cosim::PortIndex kMainBoard = 0;  // "pic" among the masters
+constexpr int kHighestAddress = 0x77;       // 7-bit addresses above are reserved
 
 void check(const BusSpec& spec) {
     const auto fail = [&](const std::string& problem, const std::string& expected) {
@@ -41,6 +42,7 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
     for (const BoardOnBus& board : spec.boards) {
         options.devices.push_back({board.name, {}, board.prompt});
         if (board.address) options.devices.back().addresses.push_back(*board.address);
+        if (board.main_board) options.devices.back().master = kMainBoard;
     }
     std::vector<std::unique_ptr<cosim::I2cSlave>> slaves;
     if (spec.ground_sensor) slaves.push_back(std::make_unique<GroundSensor>());

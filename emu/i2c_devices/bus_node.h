@@ -19,14 +19,17 @@ struct BoardOnBus {
     std::string name;
     std::optional<std::uint8_t> address{};
     bool prompt = false;
+    bool main_board = false;
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
-        return visit(field("name", &BoardOnBus::name, "of the port").required(),
-                     field("address", &BoardOnBus::address,
-                           "7 bits: it hears this one only; none: its firmware decides")
-                         .within(0, 0x77),
-                     field("prompt", &BoardOnBus::prompt, "it never stretches (cosim/i2c/i2c_bus.h)"));
+        return visit(
+            field("name", &BoardOnBus::name, "of the port").required(),
+            field("address", &BoardOnBus::address,
+                  "7 bits: it hears this one only; none: its firmware decides")
+                .within(0, 0x77),
+            field("prompt", &BoardOnBus::prompt, "it never stretches (cosim/i2c/i2c_bus.h)"),
+            field("main_board", &BoardOnBus::main_board, "the slave of the chip that is the master \"pic\""));
     }
 };
 static_assert(lists_all_fields<BoardOnBus>);

@@ -67,6 +67,8 @@ class BoardListener {
     /// The codec turned a sample into sound; `value` is that of the signal `speaker`.
     virtual void sound_sample(double /*value*/, dspic::Cycle /*now*/) {}
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// The chip answers as a slave, `now` on the wires.
+    virtual void i2c_answer(const cosim::I2cPhase& /*answer*/, cosim::Time /*now*/) {}
     /// For the bus of a module among BoardParameters::can.
     virtual void can_to_bus(int /*unit*/, const cosim::CanMessage& /*message*/) {}
     /// Edges that the board makes by itself moved, from cycle `at` on (Chip::edges_moved()).
@@ -156,6 +158,9 @@ class Board : public dspic::Pins {
     std::uint64_t analog_epoch(dspic::Cycle from) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
+    void i2c_slave_answer(int, const cosim::I2cPhase& answer) override {
+        listener_.i2c_answer(answer, dspic::i2c_answer_time(answer));
+    }
     bool can_wired(int unit) const override { return parameters_.can >> (unit - 1) & 1; }
     void can_to_bus(int unit, const cosim::CanMessage& message, dspic::Cycle) override {
         listener_.can_to_bus(unit, message);

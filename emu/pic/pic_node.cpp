@@ -34,6 +34,10 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
       log_(options.log, image) {
     if (options.ircom) ports_.push_back({"ir", cosim::PortKind::Signals});
     can_.add(options.board.can, ports_);
+    if (options.i2c_slave) {
+        slave_port_ = static_cast<cosim::PortIndex>(ports_.size());
+        ports_.push_back({"i2c_slave", cosim::PortKind::I2c});
+    }
     if (options.camera) {
         if (options.i2c_linked) ports_.push_back({"camera_i2c", cosim::PortKind::I2c});
         ports_.push_back({"camera", cosim::PortKind::Signals});
@@ -124,6 +128,7 @@ void PicNode::receive(const cosim::Message& message) {
         chip_->uart_receive(unit, *frame);
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         if (is_camera_bus(message.port)) return camera_phase(*phase, message.time);
+        if (is_slave(message.port)) return slave_phase(*phase, message.time);
         chip_->i2c_answer(kI2cUnit, *phase);
     } else if (const auto* can = std::get_if<cosim::CanMessage>(&message.payload)) {
         chip_->can_news(can_.unit_of(message.port), *can);
@@ -137,12 +142,48 @@ void PicNode::receive(const cosim::Message& message) {
     }
 }
 
+cosim::Time PicNode::fastest_i2c_period() const {
+    return static_cast<cosim::Time>(
+        std::llround(static_cast<double>(cosim::kSecond) / options_.fastest_i2c_hertz));
+}
+
+/// The bus hands a phase on half a clock late at most.
+cosim::Time PicNode::slave_lookahead() const {
+    return kClocksToAnswer * fastest_i2c_period() - fastest_i2c_period() / 2;
+}
+
+/// Holds what lookahead() guarantees: no answer before that long after the phase came in. A bus that passes a
+/// phase on late, or a master faster than the fastest, moves the phase.
+void PicNode::slave_phase(cosim::I2cPhase phase, cosim::Time now) {
+    if (phase.kind != cosim::I2cPhaseKind::Stop && phase.kind != cosim::I2cPhaseKind::Acknowledge) {
+        phase.clock_period = std::max(phase.clock_period, fastest_i2c_period());
+        phase.start = std::max(phase.start, now + slave_lookahead() - kClocksToAnswer * phase.clock_period);
+    }
+    chip_->i2c_slave_phase(kI2cUnit, phase);
+}
+
+void PicNode::i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) {
+    if (!options_.i2c_slave) return;
+    outbox_->push_back({board::reached(*chip_, faults_.get(), now), slave_port_, answer});
+}
+
+cosim::Time PicNode::earliest_answer() const {
+    const cosim::Time earliest = chip_->earliest_i2c_slave_answer(kI2cUnit);
+    return std::max(granted_, faults_ && earliest != cosim::kNever
+                                  ? std::min(earliest, faults_->earliest(granted_))
+                                  : earliest);
+}
+
 /// The bus reports a phase half a clock before the answer is due: the camera is prompt
 /// (cosim/i2c/i2c_bus.h).
 cosim::Time PicNode::camera_lookahead() const {
-    const auto fastest_period = static_cast<cosim::Time>(
-        std::llround(static_cast<double>(cosim::kSecond) / options_.fastest_i2c_hertz));
-    return fastest_period / 2;
+    return fastest_i2c_period() / 2;
+}
+
+cosim::Time PicNode::lookahead(cosim::PortIndex port) const {
+    if (is_camera_bus(port)) return camera_lookahead();
+    const bool idle = is_slave(port) && chip_->earliest_i2c_slave_answer(kI2cUnit) == cosim::kNever;
+    return idle ? slave_lookahead() : 0;
 }
 
 /// The camera never stretches: its answer is known at once, and due when the eighth clock ends.
@@ -162,6 +203,7 @@ void PicNode::camera_phase(const cosim::I2cPhase& phase, cosim::Time now) {
 
 cosim::Time PicNode::earliest_output(cosim::PortIndex port) const {
     if (is_camera_bus(port)) return cosim::kNever;
+    if (is_slave(port)) return earliest_answer();
     if (port == kI2c) {
         const cosim::Time earliest = chip_->earliest_i2c(kI2cUnit);
         return std::max(granted_, faults_ ? std::min(earliest, faults_->earliest(granted_)) : earliest);
@@ -195,6 +237,7 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
         outbox_->push_back({board::reached(*chip_, faults_.get(), phase.start), kI2c, phase});
         return;
     }
+    if (phase.kind == cosim::I2cPhaseKind::Acknowledge) return;  // nobody is asked
     const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);
     const Board::OwnPhase own = board_.own_i2c(phase, chip_->clock().first_cycle_at(answered));
     if (own.answer) chip_->i2c_answer_at(unit, *own.answer, answered);

@@ -28,7 +28,9 @@ struct PicNodeOptions {
     /// firmware lets go before a character is over, that is not seen.
     bool uart1_breaks = false;
     bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
-    /// No master on the bus is faster; one that is gets the camera's answers as if it were not.
+    /// It is a device of the linked bus too, by the port "i2c_slave".
+    bool i2c_slave = false;
+    /// No master on the bus is faster; one that is gets the board's answers as if it were not.
     double fastest_i2c_hertz = 400e3;
     bool skip_idle = true;            ///< busy-wait loops are skipped forward
     std::vector<cosim::Time> resets;  ///< the reset button (a pulse on MCLR), rising times above 0
@@ -51,6 +53,8 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     static constexpr cosim::PortIndex kWorld = 3;
     static constexpr cosim::PortIndex kIr = 4;  ///< if `ircom`: pulses out, ir_light in
 
+    /// The port "i2c_slave", of a board that is one.
+    cosim::PortIndex slave_port() const { return slave_port_; }
     /// The port "camera", behind all others.
     cosim::PortIndex camera_port() const { return static_cast<cosim::PortIndex>(ports_.size() - 1); }
     /// The port "camera_i2c" before it, of a camera that is a device of a linked bus.
@@ -64,9 +68,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
-    cosim::Time lookahead(cosim::PortIndex port) const override {
-        return is_camera_bus(port) ? camera_lookahead() : 0;
-    }
+    cosim::Time lookahead(cosim::PortIndex port) const override;
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
     std::string finish() override;
@@ -102,6 +104,12 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     bool is_camera_bus(cosim::PortIndex port) const {
         return options_.camera && options_.i2c_linked && port == camera_bus_port();
     }
+    bool is_slave(cosim::PortIndex port) const { return options_.i2c_slave && port == slave_port_; }
+    cosim::Time fastest_i2c_period() const;
+    cosim::Time slave_lookahead() const;
+    cosim::Time earliest_answer() const;
+    /// A phase for the chip as a device of the bus.
+    void slave_phase(cosim::I2cPhase phase, cosim::Time now);
     cosim::Time camera_lookahead() const;
     /// A phase for the camera as a device of the bus.
     void camera_phase(const cosim::I2cPhase& phase, cosim::Time now);
@@ -109,6 +117,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) override;
     void can_to_bus(int unit, const cosim::CanMessage& message) override;
     void step_lost(int motor, dspic::Cycle now) override;
     void line_pulled_low(dspic::Cycle now) override;
@@ -121,6 +130,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
 
     PicNodeOptions options_;
     std::vector<cosim::Port> ports_;
+    cosim::PortIndex slave_port_ = 0;
     board::CanPorts can_;
     Board board_;
     std::unique_ptr<dspic::Chip> chip_;

@@ -29,6 +29,7 @@ struct PicSpec {
     std::vector<std::string> errata{};
     bool bluetooth = false;
     bool ircom = false;
+    bool i2c_slave = false;
     board::CanModules can = 0;
     std::string nvm{};
     std::string log{};
@@ -54,6 +55,7 @@ struct PicSpec {
             field("errata", &PicSpec::errata, "of the chip, by name (emu/dspic/devices/errata.h)"),
             field("bluetooth", &PicSpec::bluetooth, "a Bluetooth module is at UART1, and sees breaks"),
             field("ircom", &PicSpec::ircom, "there is a medium of IRcom at the port \"ir\""),
+            field("i2c_slave", &PicSpec::i2c_slave, "other masters of its I2C bus can address it"),
             field("can", &PicSpec::can, "CAN modules that are on a bus: bit 0 is module 1").within(0, 3),
             field("nvm", &PicSpec::nvm, "file that keeps flash and EEPROM; empty: none")
                 .not_in(Comparison::Run),

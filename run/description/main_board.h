@@ -38,14 +38,13 @@ struct MainBoard {
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
-        return visit(
-            part(&MainBoard::board), field("camera", &MainBoard::camera, "on the board; none: none"),
-            field("camera_log", &MainBoard::camera_log, "file for a line per picture; empty: none")
-                .not_in(Comparison::State),
-            field("i2c_hertz", &MainBoard::i2c_hertz,
-                  "with a camera: no master on the bus is faster; one that is gets its answers as if it were "
-                  "not")
-                .in("Hz"));
+        return visit(part(&MainBoard::board), field("camera", &MainBoard::camera, "on the board; none: none"),
+                     field("camera_log", &MainBoard::camera_log, "file for a line per picture; empty: none")
+                         .not_in(Comparison::State),
+                     field("i2c_hertz", &MainBoard::i2c_hertz,
+                           "with a camera or as a slave: no master on the bus is faster; one that is gets "
+                           "its answers as if it were not")
+                         .in("Hz"));
     }
 };
 static_assert(lists_all_fields<MainBoard>);

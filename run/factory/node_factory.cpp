@@ -63,12 +63,13 @@ std::unique_ptr<cosim::StatefulNode> make(const MainBoard& main, Faults faults) 
     options.ircom = spec.ircom;
     options.uart1_breaks = spec.bluetooth;
     options.log = spec.log;
+    options.i2c_slave = spec.i2c_slave;
+    options.fastest_i2c_hertz = main.i2c_hertz.value_or(options.fastest_i2c_hertz);
     options.resets = times_of(spec.resets);
     options.faults = std::move(faults);
     if (main.camera) {
         options.camera = camera::Fitting{*camera::model_of(main.camera->model), main.camera->turned};
         options.camera_log = main.camera_log;
-        options.fastest_i2c_hertz = main.i2c_hertz.value_or(options.fastest_i2c_hertz);
         options.scenery = make_board_scenery(*main.camera);
     }
     const image::Image image = board_image(spec.firmware, spec.nvm, dspic::dspic30f6014a().name, options.nvm);

@@ -79,6 +79,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     pic.camera_turned = reader.flag("camera_turned", false);
     pic.revision = read_revision(reader);
     pic.errata = read_errata(reader);
+    if (reader.has("i2c_slave")) pic.i2c_slave = reader.flag("i2c_slave", false);
     reader.finish();
     return pic;
 }

@@ -54,6 +54,8 @@ struct PicBoard {
     std::string revision = "1.2";  ///< of the board: "1.2" or "1.3"
     std::vector<std::string> errata{};  ///< of the chip (emu/dspic/devices/errata.h)
     std::optional<BluetoothModule> bluetooth{};
+    /// Other masters of its I2C bus can address it; none: if its firmware sets an address (I2CADD).
+    std::optional<bool> i2c_slave{};
 };
 
 /// The range-and-bearing board of a robot (e-RandB), on its I2C bus.

@@ -1,5 +1,6 @@
 // A bus that ran ahead and went back is the bus that never did: what it sends, EOTs, logs and reports.
-// Two masters, a board behind a port, ground sensor and turret, all at random; a twin is never marked.
+// Two masters, one of them a device too, a board behind a port, ground sensor and turret, all at random; a
+// twin is never marked.
 
 #include "base/random.h"
 #include "cosim/i2c/i2c_bus.h"
@@ -17,7 +18,7 @@ using namespace puckloop::cosim;
 
 namespace {
 
-constexpr PortIndex kMasters = 2, kBoard = 2, kWorld = 3;
+constexpr PortIndex kMasters = 2, kMainBoard = 3, kWorld = 4;
 constexpr Time kPeriod = 10 * kMicrosecond;
 
 /// Masters, board and world: what each does next follows from what the bus sent.
@@ -46,7 +47,7 @@ class Outside {
             if (message.port < kMasters)
                 go_on(message.port, *phase, at);
             else
-                board(*phase, at);
+                board(message.port, *phase, at);
         }
         if (random_.below(4) == 0)
             coming_.push_back({now + pick(kMillisecond), kWorld,
@@ -54,10 +55,16 @@ class Outside {
                                       static_cast<double>(random_.below(1000))}});
     }
 
+    int stops_seen = 0;  ///< by the device that is a master too
+
   private:
     Time pick(Time most) { return 1 + static_cast<Time>(random_.below(static_cast<std::uint64_t>(most))); }
     void send(PortIndex port, I2cPhaseKind kind, std::uint8_t byte, Time at) {
-        I2cPhase phase{.kind = kind, .byte = byte, .ack = 1, .start = at, .clock_period = kPeriod};
+        I2cPhase phase{.kind = kind,
+                       .byte = byte,
+                       .ack = kind != I2cPhaseKind::Acknowledge,
+                       .start = at,
+                       .clock_period = kPeriod};
         coming_.push_back({at, port, phase});
     }
     void begin(PortIndex master, Time at) {
@@ -74,6 +81,9 @@ class Outside {
             begin(master, at + pick(500 * kMicrosecond));
         } else if (what == 2) {
             begin(master, at);
+        } else if (answer.kind == I2cPhaseKind::Data && what == 4) {  // and goes on, against a NACK
+            send(master, I2cPhaseKind::Acknowledge, 0, at);
+            send(master, I2cPhaseKind::Write, 0xA5, at + 1);
         } else if (answer.kind == I2cPhaseKind::Data || what == 3) {
             send(master, I2cPhaseKind::Read, 0, at);
         } else {
@@ -84,14 +94,15 @@ class Outside {
             begin(master, at + kMillisecond + pick(kMillisecond));
         }
     }
-    void board(const I2cPhase& phase, Time now) {
-        if (phase.kind == I2cPhaseKind::Stop) return;
+    void board(PortIndex port, const I2cPhase& phase, Time now) {
+        stops_seen += port == kMainBoard && phase.kind == I2cPhaseKind::Stop;
+        if (phase.kind == I2cPhaseKind::Stop || phase.kind == I2cPhaseKind::Acknowledge) return;
         I2cPhase answer = phase;
         answer.kind = phase.kind == I2cPhaseKind::Read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge;
         answer.ack = random_.below(5) != 0;
         answer.byte = static_cast<std::uint8_t>(random_.below(256));
         const Time stretch = random_.below(6) == 0 ? pick(2 * kMillisecond) : 0;
-        coming_.push_back({std::max(now, phase.start + 8 * kPeriod + stretch), kBoard, answer});
+        coming_.push_back({std::max(now, phase.start + 8 * kPeriod + stretch), port, answer});
     }
 
     RandomStream random_;
@@ -100,7 +111,7 @@ class Outside {
 
 std::unique_ptr<Node> bus(const std::string& log) {
     i2c_devices::BusSpec spec;
-    spec.boards = {{"rab", {}}};
+    spec.boards = {{"rab", {}}, {.name = "main_board", .main_board = true}};
     spec.log = log;
     return i2c_devices::make_bus_node(spec);
 }
@@ -164,6 +175,7 @@ TEST_CASE("a bus goes back") {
             back.settle();
             CHECK(text_of(log) == text_of(twin_log));
         }
+        CHECK(outside.stops_seen > 5);
         const std::string report = node->finish();
         CHECK(report == twin->finish());
         CHECK(report.find("\"transfers\":0") == std::string::npos);

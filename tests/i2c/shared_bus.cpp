@@ -1,5 +1,9 @@
 #include "shared_bus.h"
 
+#include "emu/dspic/devices/device.h"
+#include "emu/pic/pic_node.h"
+#include "tests/node_under_test.h"
+
 #include <catch2/catch.hpp>
 #include <cerrno>
 
@@ -112,6 +116,21 @@ class BoardNode final : public Node {
     int written_ = 0;
 };
 
+/// Shows its memory at the end.
+class Watched final : public pic::PicNode {
+  public:
+    Watched(const image::Image& image, const pic::PicNodeOptions& options, SharedBus& bus)
+        : PicNode(image, options), bus_(bus) {}
+    std::string finish() override {
+        for (const auto& [name, address] : bus_.watched)
+            bus_.words[name] = chip().peek_data(address);
+        return PicNode::finish();
+    }
+
+  private:
+    SharedBus& bus_;
+};
+
 }  // namespace
 
 void SharedBus::run() {
@@ -144,11 +163,22 @@ void SharedBus::run_once(std::optional<std::uint64_t> chop) {
         nodes.push_back({name, name, {}});
         links.push_back({"i2c." + name, {name, "i2c"}, {"bus", name}});
     }
+    if (!main_board.empty()) {
+        spec.boards.push_back({"main_board", {}, false, true});
+        links.push_back({"i2c.main_board", {"pic", "i2c_slave"}, {"bus", "main_board"}});
+    }
     nodes[0].json = "bus";
     nodes[1].json = "pic";
     nodes[2].json = "linux";
     const NodeFactory factory = [&](const std::string& name) -> std::unique_ptr<Node> {
         if (name == "bus") return i2c_devices::make_bus_node(spec);
+        if (name == "pic" && !main_board.empty()) {
+            pic::PicNodeOptions board;
+            board.board.name = "pic";
+            board.i2c_slave = true;
+            board.fastest_i2c_hertz = hertz;
+            return std::make_unique<Watched>(assembled(dspic::dspic30f6014a(), main_board), board, *this);
+        }
         if (name == "pic") return std::make_unique<Master>(name, kPicPeriod, pic, pic_results);
         if (name == "linux")
             return std::make_unique<Master>(name, static_cast<Time>(1e12 / hertz), linux_board,
@@ -165,6 +195,7 @@ void SharedBus::run_once(std::optional<std::uint64_t> chop) {
     REQUIRE(outcome.success);
     sha = outcome.trace_sha256;
     report = outcome.nodes[0].json;
+    pic_report = outcome.nodes[1].json;
 }
 
 I2cTransfer writing(std::uint16_t address, std::string bytes) {

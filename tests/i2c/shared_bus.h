@@ -31,6 +31,9 @@ struct Board {
 
 struct SharedBus {
     std::vector<Task> pic, linux_board;
+    /// Assembler source: the master "pic" is a main board with this program in place of the list, and a
+    /// device too.
+    std::string main_board{};
     std::vector<Board> boards;
     bool ground_sensor = false;
     std::vector<cosim::FaultSpec> faults{};
@@ -40,7 +43,10 @@ struct SharedBus {
 
     // after run()
     std::vector<linuxboard::I2cResult> pic_results, linux_results;
-    std::string report;  ///< of the bus
+    std::string report;                            ///< of the bus
+    std::string pic_report;                        ///< of the main board
+    std::map<std::string, std::uint16_t> words{};  ///< of its data memory, by the names of `watched`
+    std::vector<std::pair<std::string, std::uint16_t>> watched{};
     std::string sha;
 
     /// Several times, with grants cut differently each time; checks that nothing depends on that.

@@ -63,7 +63,7 @@ constexpr SchemaKey kPic[]{
     {"reset", "texts", "times at which the reset button is pressed"}, {"nvm", "text", "file that keeps flash and EEPROM"},
     {"boot", "time", "until the firmware listens"}, {"camera", "text", "po3030k, po6030k, po8030d or none"},
     {"camera_turned", "flag", "it lies on its side"}, {"board", "text", "revision: 1.2 or 1.3"},
-    {"errata", "texts", "of the chip"}};
+    {"errata", "texts", "of the chip"}, {"i2c_slave", "flag", "the Linux board can address it; default: by its image"}};
 constexpr SchemaKey kModule[]{
     {"number", "integer", ""}, {"name", "text", "that others see"}, {"pin", "text", ""}, {"address", "text", "08:00:17:2C:00:01"},
     {"mode", "text", "automatic or command"}, {"boot", "time", "from reset to READY"}, {"computer", "text", "at the other end: pty, tcp:PORT, script:FILE"},
