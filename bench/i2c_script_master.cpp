@@ -13,6 +13,7 @@ namespace {
 constexpr Time kClocksOfByte = 9;
 constexpr std::size_t kMostReads = 1000;
 constexpr std::uint8_t kReadBit = 1;
+constexpr std::uint8_t kTenBits = 0xF0;
 }  // namespace
 
 I2cScriptMaster::I2cScriptMaster(std::vector<I2cScriptLine> script, const I2cMasterOptions& options,
@@ -28,19 +29,29 @@ I2cScriptMaster::I2cScriptMaster(std::vector<I2cScriptLine> script, const I2cMas
     plan();
 }
 
-/// The steps of the present line.
+/// The steps of the present line. Of a ten-bit address the first byte is 11110, two bits, R/W; it is read by
+/// a repeated START with the first byte again (UM10204, 3.1.11).
 void I2cScriptMaster::plan() {
     const I2cScriptLine& line = script_[line_];
-    const auto address = static_cast<std::uint8_t>(line.address << 1);
     steps_.clear();
     step_ = 0;
     reading_ = false;
-    if (!line.read || line.register_number) steps_.push_back({I2cPhaseKind::Start, address});
+    raw_ = !line.raw.empty();
+    if (raw_) return plan_raw(line.raw);
+    const auto seven = static_cast<std::uint8_t>(line.address << 1);
+    const auto first_of_ten = static_cast<std::uint8_t>(kTenBits | (line.address >> 7 & 6));
+    const std::uint8_t address = line.ten_bits ? first_of_ten : seven;
+    const auto to_write = [&] {
+        steps_.push_back({I2cPhaseKind::Start, address});
+        if (line.ten_bits) steps_.push_back({I2cPhaseKind::Write, static_cast<std::uint8_t>(line.address)});
+    };
+    if (!line.read || line.register_number) to_write();
     if (line.read) {
         if (line.register_number) {
             steps_.push_back({I2cPhaseKind::Write, *line.register_number});
             if (!repeated_start_) steps_.push_back({I2cPhaseKind::Stop});
         }
+        if (line.ten_bits && (!line.register_number || !repeated_start_)) to_write();
         steps_.push_back({I2cPhaseKind::Start, static_cast<std::uint8_t>(address | kReadBit)});
         for (int i = 1; i <= line.count; ++i)
             steps_.push_back({I2cPhaseKind::Read, 0, static_cast<std::uint8_t>(i < line.count ? 1 : 0)});
@@ -49,6 +60,14 @@ void I2cScriptMaster::plan() {
             steps_.push_back({I2cPhaseKind::Write, byte});
     }
     steps_.push_back({I2cPhaseKind::Stop});
+}
+
+void I2cScriptMaster::plan_raw(const std::vector<I2cRawStep>& raw) {
+    constexpr I2cPhaseKind kKinds[] = {I2cPhaseKind::Start, I2cPhaseKind::Write, I2cPhaseKind::Read,
+                                       I2cPhaseKind::Stop};
+    for (const I2cRawStep& step : raw)
+        steps_.push_back({kKinds[static_cast<std::size_t>(step.kind)], step.byte,
+                          static_cast<std::uint8_t>(step.acknowledge ? 1 : 0), step.clocks});
 }
 
 Time I2cScriptMaster::due() const {
@@ -66,9 +85,20 @@ Time I2cScriptMaster::limit() const {
 void I2cScriptMaster::begin() {
     const Step& step = steps_[step_];
     I2cPhase phase{step.kind, step.byte, step.ack, next_, clock_, 0};
-    if (step.kind == I2cPhaseKind::Start) ++report_.starts;
-    if (step.kind != I2cPhaseKind::Stop) open_ = phase;  // before: the answer may come at once
+    if (step.kind == I2cPhaseKind::Start) {
+        ++report_.starts;
+        addressed_ = step.byte >> 1;
+        if (raw_) reading_ = false;
+    }
+    const bool broken_off = step.clocks < kClocksOfByte;
+    // Before: the answer may come at once. Nobody waits for that of a byte that is broken off.
+    if (step.kind != I2cPhaseKind::Stop && !broken_off) open_ = phase;
     target_.i2c_slave_phase(phase);
+    if (broken_off) {
+        next_ += step.clocks * clock_;
+        ++step_;
+        return;
+    }
     if (step.kind != I2cPhaseKind::Stop) return;
     if (logs_ != nullptr) logs_->i2c(kI2cScriptUnit, phase);
     report_.last_stop = phase.start + clock_;
@@ -99,12 +129,14 @@ void I2cScriptMaster::answered(const I2cPhase& answer, Time now) {
         ++report_.bytes_read;
         if (!reading_ && report_.reads.size() < kMostReads) {
             const I2cScriptLine& line = script_[line_];
-            report_.reads.push_back({line.time, line.address, line.register_number, {}});
+            report_.reads.push_back({line.time, raw_ ? addressed_ : line.address, line.register_number, {}});
             reading_ = true;
         }
         if (reading_) report_.reads.back().bytes.push_back(answer.byte);
     } else {
         phase.ack = answer.ack;
+        if (phase.kind == I2cPhaseKind::Write)  // a slave that sends pulls SDA low
+            phase.byte = static_cast<std::uint8_t>(phase.byte & answer.byte);
         if (phase.ack == 0)
             refused(phase);
         else if (phase.kind == I2cPhaseKind::Write)
@@ -117,7 +149,7 @@ void I2cScriptMaster::answered(const I2cPhase& answer, Time now) {
 void I2cScriptMaster::refused(const I2cPhase& phase) {
     ++(phase.kind == I2cPhaseKind::Start ? report_.addresses_refused : report_.bytes_refused);
     if (report_.first_refused == 0) report_.first_refused = script_[line_].line;
-    step_ = steps_.size() - 1;
+    if (!raw_) step_ = steps_.size() - 1;
 }
 
 void I2cScriptMaster::poll(Time now) {

@@ -3,7 +3,8 @@
 // START: the first clock of the address byte falls at `time`, or two clocks after the STOP of the line before
 // it (STOP and START take one each). A byte takes nine clocks and what the slave stretches them; a STOP and a
 // repeated START take one. The master never gives up on a byte that is not acknowledged: it sends STOP and
-// goes on with the next line.
+// goes on with the next line. A raw line does what it states, whatever the slave answers; the bytes that it
+// reads are reported with the address byte before them.
 //
 // Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus states 25 to 35 ms,
 // Linux drivers wait up to a second; the firmware known here holds it for 2 ms). The script then ends.
@@ -26,7 +27,7 @@ struct I2cMasterOptions {
 struct I2cScriptReport {
     struct Read {
         cosim::Time time = 0;  ///< of its first START
-        std::uint8_t address = 0;
+        std::uint16_t address = 0;
         std::optional<std::uint8_t> register_number;
         std::vector<std::uint8_t> bytes;
     };
@@ -66,8 +67,10 @@ class I2cScriptMaster {
         cosim::I2cPhaseKind kind = cosim::I2cPhaseKind::Stop;
         std::uint8_t byte = 0;
         std::uint8_t ack = 0;
+        int clocks = 9;  ///< fewer: the next step breaks it off
     };
     void plan();
+    void plan_raw(const std::vector<I2cRawStep>& raw);
     void next_line();
     void refused(const cosim::I2cPhase& phase);
 
@@ -81,7 +84,9 @@ class I2cScriptMaster {
     std::size_t step_ = 0;
     cosim::Time next_ = cosim::kNever;  // when the step begins
     std::optional<cosim::I2cPhase> open_;
-    bool reading_ = false;  // this line's read has begun to return bytes
+    bool reading_ = false;         // this line's read has begun to return bytes
+    std::uint16_t addressed_ = 0;  // by the newest address byte
+    bool raw_ = false;             // this line goes on whatever is answered
     I2cScriptReport report_;
 };
 

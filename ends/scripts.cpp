@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace puckloop::exec {
 
 namespace {
 
 constexpr std::uint32_t kHighestAddress = 0x7F;
+constexpr std::uint32_t kHighestOfTen = 0x3FF;
+constexpr std::string_view kTen = "ten:";
 constexpr std::uint32_t kLongestRead = 256;
 constexpr std::size_t kShownOfName = 40;
 
@@ -53,12 +56,65 @@ std::uint16_t signal_named(std::string_view file, const TextLine& line,
 
 /// Hexadecimal after 0x only: data sheets write addresses so, and a bare 20 would be taken for one or the
 /// other.
-std::uint8_t bus_address(std::string_view file, const TextLine& line, std::string_view word) {
+std::uint16_t bus_address(std::string_view file, const TextLine& line, std::string_view word, bool ten_bits) {
     if (!word.starts_with("0x") && !word.starts_with("0X"))
-        wrong_shape(file, line, fmt::format("'{}' is not a 7-bit address", readable(word)),
+        wrong_shape(file, line,
+                    fmt::format("'{}' is not a {}-bit address", readable(word), ten_bits ? 10 : 7),
                     "hexadecimal after 0x, such as 0x20");
-    return static_cast<std::uint8_t>(
-        parse_integer(file, line.number, word, "7-bit address", kHighestAddress));
+    return static_cast<std::uint16_t>(parse_integer(file, line.number, word,
+                                                    ten_bits ? "10-bit address" : "7-bit address",
+                                                    ten_bits ? kHighestOfTen : kHighestAddress));
+}
+
+/// The byte that two hexadecimal digits are.
+std::optional<std::uint8_t> byte_of(std::string_view digits) {
+    unsigned value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+    if (digits.size() != 2 || error != std::errc{} || end != digits.data() + digits.size()) return {};
+    return static_cast<std::uint8_t>(value);
+}
+
+I2cRawStep raw_step(std::string_view file, const TextLine& line, std::string_view word) {
+    constexpr std::string_view kSteps = "sXX, wXX, r, n or p, hexadecimal; /1 to /7 behind all but p";
+    const auto wrong = [&] {
+        wrong_shape(file, line, fmt::format("'{}' is no step of a master", readable(word)), kSteps);
+    };
+    I2cRawStep step;
+    const std::string_view whole = word.substr(0, word.find('/'));
+    if (whole.size() != word.size()) {
+        const std::string_view clocks = word.substr(whole.size() + 1);
+        if (clocks.size() != 1 || clocks[0] < '1' || clocks[0] > '7' || whole == "p") wrong();
+        step.clocks = clocks[0] - '0';
+    }
+    if (whole == "r" || whole == "n") {
+        step.kind = I2cRawStep::Kind::Read;
+        step.acknowledge = whole == "r";
+    } else if (whole != "p") {
+        const auto byte = byte_of(whole.substr(whole.empty() ? 0 : 1));
+        if (!byte || (whole[0] != 's' && whole[0] != 'w')) wrong();
+        step.kind = whole[0] == 's' ? I2cRawStep::Kind::Start : I2cRawStep::Kind::Write;
+        step.byte = *byte;
+    }
+    return step;
+}
+
+std::vector<I2cRawStep> raw_steps(std::string_view file, const TextLine& line) {
+    using Kind = I2cRawStep::Kind;
+    std::vector<I2cRawStep> steps;
+    for (std::size_t i = 2; i < line.words.size(); ++i)
+        steps.push_back(raw_step(file, line, line.words[i]));
+    if (steps.front().kind != Kind::Start) wrong_shape(file, line, "a master begins with a START", "sXX");
+    if (steps.back().kind != Kind::Stop)
+        wrong_shape(file, line, "the master keeps the bus for good", "p as the last step");
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+        const bool ends = steps[i].kind == Kind::Start || steps[i].kind == Kind::Stop;
+        if (steps[i - 1].clocks < 9 && !ends)
+            wrong_shape(file, line, "a byte that is broken off is followed by another",
+                        "a START or STOP, which breaks it off");
+        if (steps[i - 1].kind == Kind::Stop && steps[i].kind != Kind::Start)
+            wrong_shape(file, line, "a byte without a START before it", "sXX behind p");
+    }
+    return steps;
 }
 
 }  // namespace
@@ -75,14 +131,23 @@ std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string
 
 std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_view text) {
     constexpr std::string_view kShape =
-        "<time_s> w <addr> <hex bytes>, or <time_s> r <addr> <register> <count>";
+        "<time_s> w <addr> <hex bytes>, <time_s> r <addr> <register> <count> or <time_s> raw <steps>";
     std::vector<I2cScriptLine> script;
     for (const TextLine& line : split_lines(text)) {
-        if (line.words.size() < 4) wrong_shape(file, line, "too short", kShape);
+        const bool raw = line.words.size() > 2 && line.words[1] == "raw";
+        if (line.words.size() < 4 && !raw) wrong_shape(file, line, "too short", kShape);
         I2cScriptLine entry;
         entry.line = line.number;
         entry.time = parse_time(file, line.number, line.words[0]);
-        entry.address = bus_address(file, line, line.words[2]);
+        if (raw) {
+            entry.raw = raw_steps(file, line);
+            script.push_back(std::move(entry));
+            continue;
+        }
+        std::string_view address = line.words[2];
+        entry.ten_bits = address.starts_with(kTen);
+        if (entry.ten_bits) address.remove_prefix(kTen.size());
+        entry.address = bus_address(file, line, address, entry.ten_bits);
         if (line.words[1] == "w") {
             entry.bytes = parse_hex_bytes(file, line, 3);
         } else if (line.words[1] == "r") {

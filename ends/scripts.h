@@ -20,14 +20,26 @@ struct UartScriptLine {
 };
 std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string_view text);
 
+/// One thing that a master does of itself, without regard to what the slave answers.
+struct I2cRawStep {
+    enum class Kind : std::uint8_t { Start, Write, Read, Stop } kind = Kind::Stop;
+    std::uint8_t byte = 0;     ///< of Start and Write
+    bool acknowledge = false;  ///< of Read
+    int clocks = 9;            ///< 1 to 7: broken off after so many, by the START or STOP that follows
+};
+
 /// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits written
-/// 0x20 (without 0x they are an error); `-` for the register: none is written, the device goes on from where
-/// it stands.
+/// 0x20 (without 0x they are an error), of 10 bits ten:0x2a5; `-` for the register: none is written, the
+/// device goes on from where it stands. Or `<time_s> raw <steps>`: sXX a START and a byte, wXX a byte
+/// written, r and n a byte read with and without acknowledge, p a STOP; /N behind it breaks it off after N
+/// clocks.
 struct I2cScriptLine {
     int line = 0;  ///< in the file, from 1
     cosim::Time time = 0;
-    std::uint8_t address = 0;
+    std::uint16_t address = 0;
+    bool ten_bits = false;
     bool read = false;
+    std::vector<I2cRawStep> raw{};                ///< not empty: nothing else counts
     std::vector<std::uint8_t> bytes;              ///< of a write
     std::optional<std::uint8_t> register_number;  ///< of a read: written first, then a repeated START
     int count = 0;                                ///< of a read: bytes, 1 to 256

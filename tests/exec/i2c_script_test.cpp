@@ -3,6 +3,7 @@
 #include "bench/i2c_script_master.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <deque>
 #include <stdexcept>
@@ -121,6 +122,55 @@ TEST_CASE("a read that names no register starts with the read") {
     CHECK(phases[0].byte == 0x41);
     CHECK(phases[1].kind == I2cPhaseKind::Read);
     CHECK_FALSE(master.report().reads[0].register_number.has_value());
+}
+
+TEST_CASE("a ten-bit address takes two bytes, a read of it three") {
+    for (const bool repeated_start : {true, false}) {
+        Slave slave;
+        exec::I2cScriptMaster master(
+            exec::parse_i2c_script("s", "0 w ten:0x2a5 0e\n0.01 r ten:0x2a5 7 1\n0.02 r ten:0x2a5 - 1\n"),
+            {.repeated_start = repeated_start}, slave, nullptr);
+        std::string wires;
+        for (const I2cPhase& phase : play(master, slave, acknowledge)) {
+            const char* kind = phase.kind == I2cPhaseKind::Start   ? "S"
+                               : phase.kind == I2cPhaseKind::Write ? "w"
+                               : phase.kind == I2cPhaseKind::Read  ? "r"
+                                                                   : "P";
+            wires += kind;
+            if (*kind == 'S' || *kind == 'w') wires += fmt::format("{:02x}", phase.byte);
+        }
+        CHECK(wires == (repeated_start ? "Sf4wa5w0ePSf4wa5w07Sf5rPSf4wa5Sf5rP"
+                                       : "Sf4wa5w0ePSf4wa5w07PSf4wa5Sf5rPSf4wa5Sf5rP"));
+        CHECK(master.report().reads.back().address == 0x2A5);
+    }
+}
+
+TEST_CASE("raw steps go on behind a refusal and break off bytes") {
+    Slave slave;
+    exec::I2cScriptMaster master(
+        exec::parse_i2c_script("s", "0 raw s3e w01/3 s3f r w0f n p\n0.01 w 0x20 01\n"), {}, slave, nullptr);
+    std::size_t number = 0;
+    std::vector<I2cPhase> seen;
+    while (master.due() != cosim::kNever) {
+        master.begin();
+        seen.push_back(slave.phases.back());
+        if (++number == 2 || seen.back().kind == I2cPhaseKind::Stop) continue;
+        I2cPhase answer = seen.back();
+        answer.ack = 0;
+        if (answer.kind != I2cPhaseKind::Start) answer.byte = 0xA5;
+        master.answered(answer, answer.start + 8 * kClock);
+    }
+    REQUIRE(seen.size() == 9);
+    CHECK(seen[2].kind == I2cPhaseKind::Start);
+    CHECK(seen[2].start == seen[1].start + 3 * kClock);
+    CHECK(seen[3].ack == 1);
+    CHECK(seen[5].ack == 0);
+    CHECK(seen[6].kind == I2cPhaseKind::Stop);
+    CHECK(master.report().bytes_read == 2);
+    REQUIRE(master.report().reads.size() == 1);
+    CHECK(master.report().reads[0].address == 0x1F);
+    CHECK(master.report().reads[0].bytes == std::vector<std::uint8_t>{0xA5, 0xA5});
+    CHECK(master.report().played == 2);
 }
 
 TEST_CASE("stretching delays what follows, a line that is late follows at once") {

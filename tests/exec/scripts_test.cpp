@@ -73,7 +73,35 @@ TEST_CASE("an I2C master's script: writes and reads") {
     CHECK(script[2].count == 256);
 }
 
+TEST_CASE("an I2C master's script: ten-bit addresses and raw steps") {
+    using Kind = I2cRawStep::Kind;
+    const auto script = parse_i2c_script(
+        "i.txt", "1 r ten:0x2A5 - 2\n0 w ten:0x5 0e\n2 raw s3e w0f/3 s3F r n w80 p s00 w01 p\n");
+    REQUIRE(script.size() == 3);
+    CHECK((script[0].ten_bits && script[0].address == 0x005 && script[0].raw.empty()));
+    CHECK((script[1].ten_bits && script[1].address == 0x2A5 && script[1].read));
+    const std::vector<I2cRawStep>& raw = script[2].raw;
+    REQUIRE(raw.size() == 10);
+    CHECK((raw[0].kind == Kind::Start && raw[0].byte == 0x3E && raw[0].clocks == 9));
+    CHECK((raw[1].kind == Kind::Write && raw[1].byte == 0x0F && raw[1].clocks == 3));
+    CHECK((raw[2].kind == Kind::Start && raw[2].byte == 0x3F));
+    CHECK((raw[3].kind == Kind::Read && raw[3].acknowledge));
+    CHECK((raw[4].kind == Kind::Read && !raw[4].acknowledge));
+    CHECK((raw[6].kind == Kind::Stop && raw[7].kind == Kind::Start && raw[7].byte == 0));
+}
+
 TEST_CASE("an I2C script's mistakes") {
+    CHECK_THAT(i2c_error("0 w ten:0x400 00"), Contains("10-bit address 0x400 is out of range"));
+    CHECK_THAT(i2c_error("0 w ten:2a5 00"), Contains("'2a5' is not a 10-bit address"));
+    CHECK_THAT(i2c_error("0 raw"), Contains("too short"));
+    for (const char* word :
+         {"x", "s", "s3", "s3g", "s3e0", "w", "r1", "p/3", "r/0", "r/8", "r/", "/3", "s3e/33"})
+        CHECK_THAT(i2c_error(std::string("0 raw s3e ") + word + " p"),
+                   Contains("line 1: '") && Contains("is no step of a master"));
+    CHECK_THAT(i2c_error("0 raw w3e p"), Contains("a master begins with a START"));
+    CHECK_THAT(i2c_error("0 raw s3e w00"), Contains("keeps the bus for good"));
+    CHECK_THAT(i2c_error("0 raw s3e/4 w00 p"), Contains("broken off is followed by another"));
+    CHECK_THAT(i2c_error("0 raw s3e p r p"), Contains("a byte without a START"));
     CHECK_THAT(i2c_error("0 w 0x20"), Contains("line 1: too short"));
     CHECK_THAT(i2c_error("0 x 0x20 00"), Contains("neither a write nor a read"));
     CHECK_THAT(i2c_error("0 w 0x80 00"),
