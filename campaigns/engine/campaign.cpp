@@ -1,28 +1,22 @@
 #include "campaigns/engine/campaign.h"
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/html.h"
 #include "campaigns/engine/identity.h"
-#include "campaigns/engine/pool.h"
-#include "campaigns/engine/slurm.h"
 #include "campaigns/engine/table.h"
 #include "campaigns/engine/worker.h"
+#include "campaigns/jobs/folder_lock.h"
+#include "campaigns/jobs/pool.h"
+#include "campaigns/jobs/slurm.h"
 #include "cosim/interrupt.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <thread>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace puckloop::faults {
 
@@ -35,27 +29,10 @@ const std::vector<std::string> kResults{"campaign.db", "campaign.db-journal", "n
                                         "boots",       "snapshots",           "slurm",
                                         "work",        "results.csv",         "report.html"};
 
-/// One campaign at a time in a folder; the lock ends with the process.
-class Lock {
-  public:
-    explicit Lock(const fs::path& out) {
-        std::error_code error;
-        fs::create_directories(out, error);
-        if (error)
-            throw InputError(out.string(), "", "cannot be made: " + error.message(), "a folder for results");
-        refuse_foreign_results(out, ".campaign", kResults);
-        file_ = ::open((out / ".campaign").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (file_ < 0) throw InputError(out.string(), "", std::strerror(errno), "a folder for results");
-        if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
-            throw InputError(out.string(), "", "another campaign writes here", "--out with another folder");
-    }
-    ~Lock() { ::close(file_); }
-    Lock(const Lock&) = delete;
-    Lock& operator=(const Lock&) = delete;
-
-  private:
-    int file_ = -1;
-};
+/// A case that three workers died of is a failure of puckloop's.
+nlohmann::json deadly_verdict(const jobs::Job& job, const std::string& why) {
+    return to_json(failed_verdict(case_from_json(job.what).faults.size(), why));
+}
 
 class Conduct {
   public:
@@ -64,15 +41,15 @@ class Conduct {
           campaign_(read_campaign(options.file)),
           scenario_(scenario_of(campaign_)),
           out_(fs::absolute(options.out.empty() ? fs::path("out") / options.file.stem() : options.out)),
-          lock_(out_) {
+          lock_(out_, kResults) {
         options_.file = fs::absolute(options.file);
         campaign_.file = options_.file;
-        if (options.slurm) check_slurm();
+        if (options.slurm) jobs::check_slurm();
         check_independence();
         for (const Sweep& sweep : campaign_.sweeps)
             check_sweep(campaign_, scenario_, sweep, work_folder(out_) / "check");
         if (options.fresh) {
-            end_tasks(slurm());
+            jobs::end_tasks(slurm());
             drop();
         }
         store_.emplace(out_ / "campaign.db", Store::Access::Write);
@@ -81,9 +58,9 @@ class Conduct {
 
     void run() {
         // First: tasks of a campaign that was killed write there until they are ended.
-        if (store_->planned("single")) resume_slurm(slurm(), take());
-        remove(work_folder(out_));
-        if (!options_.snapshots) remove(out_ / "snapshots");
+        if (store_->planned("single")) jobs::resume_slurm(slurm(), take());
+        jobs::remove_folder(work_folder(out_));
+        if (!options_.snapshots) jobs::remove_folder(out_ / "snapshots");
         for (const std::uint64_t seed : campaign_.seeds)
             run_nominal(seed);
         phase("single", [&](int) { return plan_singles(campaign_, scenario_, nominals_); });
@@ -92,7 +69,7 @@ class Conduct {
                 return plan_fewer(campaign_, scenario_, store_->results(), first, fewer_name(round));
             });
         phase("pair", [&](int first) { return plan_pairs(campaign_, store_->results(), first); });
-        remove(work_folder(out_));
+        jobs::remove_folder(work_folder(out_));
         const Results results{campaign_, out_, store_->results(), store_->pruned()};
         write_table(results);
         write_html(results);
@@ -122,19 +99,7 @@ class Conduct {
     /// Only what a campaign writes.
     void drop() {
         for (const std::string& name : kResults)
-            remove(out_ / name);
-    }
-
-    /// Workers of a campaign that was killed a moment ago may still write there: they end with it.
-    void remove(const fs::path& path) {
-        constexpr int kTries = 50;
-        std::error_code error;
-        for (int tries = 0; tries < kTries; ++tries) {
-            fs::remove_all(path, error);
-            if (error != std::errc::directory_not_empty) break;
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        }
-        if (error) throw RunError(fmt::format("{}: cannot be removed: {}", path.string(), error.message()));
+            jobs::remove_folder(out_ / name);
     }
 
     void claim() {
@@ -204,7 +169,7 @@ class Conduct {
             } catch (const std::runtime_error& problem) {
                 // Cases are executed whole; if the disk is full they will say so.
                 fmt::print(stderr, "no snapshots: {}\n", problem.what());
-                remove(start.snapshots);
+                jobs::remove_folder(start.snapshots);
             }
         }
     }
@@ -219,9 +184,13 @@ class Conduct {
         if (options_.snapshots) save_prefixes(pending);
         const auto begun = std::chrono::steady_clock::now();
         if (options_.slurm && !pending.empty())
-            run_slurm(slurm(), pending, take());
+            jobs::run_slurm(slurm(), jobs_of(pending), take());
         else
-            run_local({options_.file, out_, jobs(), interrupt_.flag()}, pending, take());
+            jobs::run_local({.crew = crew(),
+                             .jobs = workers(),
+                             .deadly = deadly_verdict,
+                             .interrupted = interrupt_.flag()},
+                            jobs_of(pending), take());
         const double minutes =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / 60;
         fmt::print(stderr, "{}: {} case{}, {} pruned, {} run now", name, cases.size(),
@@ -230,11 +199,18 @@ class Conduct {
         fmt::print(stderr, "\n");
     }
 
-    TakeVerdict take() {
+    static std::vector<jobs::Job> jobs_of(const std::vector<Case>& cases) {
+        std::vector<jobs::Job> list;
+        for (const Case& one : cases)
+            list.push_back({one.id, to_json(one)});
+        return list;
+    }
+    jobs::TakeResult take() {
         return [this](int id, const nlohmann::json& verdict) { store_->add_result(id, verdict); };
     }
-    SlurmOptions slurm() const { return {options_.file, out_, options_.tasks, interrupt_.flag()}; }
-    int jobs() const {
+    jobs::Crew crew() const { return {{"faults", "worker", options_.file.string(), out_.string()}}; }
+    jobs::SlurmOptions slurm() const { return {crew(), out_, options_.tasks, interrupt_.flag()}; }
+    int workers() const {
         return options_.jobs > 0 ? options_.jobs
                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     }
@@ -243,7 +219,7 @@ class Conduct {
     Campaign campaign_;
     scenarios::Scenario scenario_;
     fs::path out_;
-    Lock lock_;
+    jobs::FolderLock lock_;
     std::optional<Store> store_;
     Nominals nominals_;
     cosim::InterruptGuard interrupt_;

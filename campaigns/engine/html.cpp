@@ -3,6 +3,7 @@
 #include "base/svg.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/engine/table.h"
+#include "campaigns/jobs/result_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -224,7 +225,7 @@ std::string html_text(const Results& results) {
 }
 
 void write_html(const Results& results) {
-    write_whole(results.out / "report.html", html_text(results));
+    jobs::write_whole(results.out / "report.html", html_text(results));
 }
 
 }  // namespace puckloop::faults

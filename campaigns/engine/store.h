@@ -2,29 +2,25 @@
 // campaign.db: cases and results of a campaign in SQLite, each result committed when it comes.
 
 #include "campaigns/engine/plan.h"
+#include "campaigns/jobs/database.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-struct sqlite3;
-
 namespace puckloop::faults {
 
 class Store {
   public:
-    enum class Access { Read, Write };
+    using Access = jobs::Database::Access;
 
     /// Opens or, with Write, makes it. InputError if it is no campaign's; RunError if the disk does not take
     /// it.
     Store(const std::filesystem::path& file, Access access);
-    ~Store();
-    Store(const Store&) = delete;
-    Store& operator=(const Store&) = delete;
 
-    std::optional<std::string> note(const std::string& key) const;
-    void set_note(const std::string& key, const std::string& value);
+    std::optional<std::string> note(const std::string& key) const { return database_.note(key); }
+    void set_note(const std::string& key, const std::string& value) { database_.set_note(key, value); }
 
     bool planned(const std::string& phase) const;
     /// The highest number of a case; 0: there is none.
@@ -42,13 +38,9 @@ class Store {
     std::vector<Case> pruned() const;
 
   private:
-    class Statement;
-    void execute(const char* sql) const;
     std::vector<Case> select(const char* sql, const std::string& phase) const;
-    [[noreturn]] void fail() const;
 
-    std::string file_;
-    sqlite3* database_ = nullptr;
+    jobs::Database database_;
 };
 
 }  // namespace puckloop::faults

@@ -1,16 +1,13 @@
 #include "campaigns/engine/table.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
 #include "campaigns/engine/findings.h"
+#include "campaigns/jobs/result_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <map>
 
 namespace puckloop::faults {
@@ -18,14 +15,6 @@ namespace puckloop::faults {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string cell(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char letter : text)
-        quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-    return quoted + "\"";
-}
 
 std::string seconds(const std::optional<double>& time) {
     return time ? fmt::format("{:.6f}", *time) : std::string();
@@ -52,15 +41,17 @@ std::string shell_word(const std::string& word) {
 
 }  // namespace
 
+using jobs::csv_cell;
+
 std::string table_text(const Results& results) {
     std::string text = "case,phase,sweep,place,faults,seed,outcome,fired,first_s,recovery_s,departure_m";
     for (const Metric& metric : results.campaign.metrics)
-        text += "," + cell(metric.name);
+        text += "," + csv_cell(metric.name);
     text += ",symptoms,trace_sha256\n";
     std::map<int, std::string> rows;
     const auto head = [](const Case& one) {
-        return fmt::format("{},{},{},{},{},{}", one.id, one.phase, cell(one.sweep), cell(one.place),
-                           cell(in_one_line(one.faults)), one.seed);
+        return fmt::format("{},{},{},{},{},{}", one.id, one.phase, csv_cell(one.sweep), csv_cell(one.place),
+                           csv_cell(in_one_line(one.faults)), one.seed);
     };
     for (const CaseResult& result : results.results) {
         const Verdict& verdict = result.verdict;
@@ -72,36 +63,19 @@ std::string table_text(const Results& results) {
             row += known ? fmt::format(",{:.9g}", *verdict.metrics[i].second) : std::string(",");
         }
         rows[result.one.id] =
-            row + fmt::format(",{},{}\n", cell(fmt::format("{}", fmt::join(verdict.symptoms, "; "))),
+            row + fmt::format(",{},{}\n", csv_cell(fmt::format("{}", fmt::join(verdict.symptoms, "; "))),
                               verdict.trace_sha256);
     }
     for (const Case& one : results.pruned)
         rows[one.id] = fmt::format("{},pruned,,,,{},{},\n", head(one),
-                                   std::string(results.campaign.metrics.size(), ','), cell(one.pruned));
+                                   std::string(results.campaign.metrics.size(), ','), csv_cell(one.pruned));
     for (const auto& [id, row] : rows)
         text += row;
     return text;
 }
 
-void write_whole(const fs::path& file, const std::string& text) {
-    const fs::path part = file.string() + ".part";
-    {
-        make_new_file(part);
-        std::ofstream out(part, std::ios::binary);
-        out << text;
-        out.flush();
-        if (!out) {
-            const int reason = errno;
-            std::error_code ignored;
-            fs::remove(part, ignored);
-            throw RunError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(reason)));
-        }
-    }
-    fs::rename(part, file);
-}
-
 void write_table(const Results& results) {
-    write_whole(results.out / "results.csv", table_text(results));
+    jobs::write_whole(results.out / "results.csv", table_text(results));
 }
 
 std::string replay_command(const Results& results, int id) {

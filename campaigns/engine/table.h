@@ -25,7 +25,4 @@ std::string replay_command_anywhere(const Results& results, int id);
 /// The same case without its campaign, for a shell: "puckloop run hello.toml --seed 1 --fault '...'"
 std::string run_command(const Results& results, int id);
 
-/// Writes the whole file or leaves the old one; throws RunError.
-void write_whole(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace puckloop::faults

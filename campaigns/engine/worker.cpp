@@ -1,22 +1,7 @@
 #include "campaigns/engine/worker.h"
 
-#include "base/error.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/plan.h"
-
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <csignal>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <functional>
-#include <iostream>
-
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <unistd.h>
 
 namespace puckloop::faults {
 
@@ -37,18 +22,6 @@ fs::path work_folder(const fs::path& out) {
 
 namespace {
 
-/// One line in one write, so that a kill leaves a line whole or without its end.
-void write_line(int descriptor, std::string line) {
-    line += '\n';
-    std::size_t done = 0;
-    while (done < line.size()) {
-        const auto count = ::write(descriptor, line.data() + done, line.size() - done);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) throw RunError(fmt::format("a result cannot be written: {}", std::strerror(errno)));
-        done += static_cast<std::size_t>(count);
-    }
-}
-
 class Runner {
   public:
     explicit Runner(const WorkerTask& task)
@@ -56,9 +29,7 @@ class Runner {
           campaign_(read_campaign(task.campaign)),
           scenario_(scenario_of(campaign_)),
           prefixes_(task.out) {
-        char host[64] = "";
-        ::gethostname(host, sizeof host - 1);  // nodes of a cluster share the folder, not process numbers
-        folder_ = work_folder(task.out) / fmt::format("{}-{}", host, ::getpid());
+        folder_ = jobs::own_folder(work_folder(task.out));
     }
     ~Runner() {
         std::error_code ignored;
@@ -68,14 +39,9 @@ class Runner {
     Runner& operator=(const Runner&) = delete;
 
     json result(const Case& one) {
-        try {
-            CaseStart start{boots_folder(task_.out)};
-            start.snapshot = prefixes_.before(one.seed, first_begin(campaign_, scenario_, one));
-            const Verdict verdict = run_case(campaign_, one, folder_, start, nominal(one.seed));
-            return {{"id", one.id}, {"verdict", to_json(verdict)}};
-        } catch (const std::runtime_error& error) {
-            return {{"id", one.id}, {"problem", error.what()}};
-        }
+        CaseStart start{boots_folder(task_.out)};
+        start.snapshot = prefixes_.before(one.seed, first_begin(campaign_, scenario_, one));
+        return to_json(run_case(campaign_, one, folder_, start, nominal(one.seed)));
     }
 
   private:
@@ -96,27 +62,8 @@ class Runner {
 }  // namespace
 
 void work(const WorkerTask& task) {
-    const bool local = task.cases.empty();
-    if (local) ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing outlives the campaign
-    int out = ::dup(STDOUT_FILENO);
-    if (!task.results.empty())
-        out = ::open(task.results.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (out < 0)
-        throw RunError(fmt::format("{}: cannot be written: {}", task.results.string(), std::strerror(errno)));
-    ::fcntl(out, F_SETFD, FD_CLOEXEC);
-    std::ifstream file;
-    if (!local) {
-        file.open(task.cases);
-        if (!file) throw InputError(task.cases.string(), "", std::strerror(errno), "cases of a campaign");
-    }
-    std::istream& in = local ? std::cin : file;
     Runner runner(task);
-    std::string line;
-    for (int index = 0; std::getline(in, line); ++index)
-        if (local || index % task.tasks == task.task)
-            write_line(out, runner.result(case_from_json(json::parse(line)))
-                                .dump(-1, ' ', false, json::error_handler_t::replace));
-    ::close(out);
+    jobs::work(task.share, [&](const json& job) { return runner.result(case_from_json(job)); });
 }
 
 }  // namespace puckloop::faults

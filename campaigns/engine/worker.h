@@ -1,6 +1,9 @@
 #pragma once
 // A process that runs cases: locally it takes them from its standard input, in a job array from a file.
 
+#include "campaigns/jobs/job_worker.h"
+
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -8,14 +11,11 @@ namespace puckloop::faults {
 
 struct WorkerTask {
     std::filesystem::path campaign;
-    std::filesystem::path out;      ///< the campaign's results folder
-    std::filesystem::path cases;    ///< file of cases, one a line; empty: standard input
-    std::filesystem::path results;  ///< file to append to; empty: standard output
-    int task = 0, tasks = 1;        ///< of the file's cases, every `tasks`-th from `task` on
+    std::filesystem::path out;  ///< the campaign's results folder
+    jobs::WorkerTask share;
 };
 
-/// Returns when there are no more cases. Each case in is a line of JSON (Case), each result a line {"id",
-/// "verdict"}, or {"id", "problem"} where the run could not be made.
+/// Returns when there are no more cases (campaigns/jobs/job_worker.h).
 void work(const WorkerTask& task);
 
 /// Folders of a campaign.

@@ -78,10 +78,10 @@ void declare_worker(Command& faults, const std::shared_ptr<Options>& options) {
     auto& worker = options->worker;
     command->add_option("file", worker.campaign);
     command->add_option("out", worker.out);
-    command->add_option("--cases", worker.cases);
-    command->add_option("--results", worker.results);
-    command->add_option("--task", worker.task)->check(whole_number_between(0, kMostTasks));
-    command->add_option("--tasks", worker.tasks)->check(whole_number_between(1, kMostTasks));
+    command->add_option("--cases", worker.share.jobs);
+    command->add_option("--results", worker.share.results);
+    command->add_option("--task", worker.share.task)->check(whole_number_between(0, kMostTasks));
+    command->add_option("--tasks", worker.share.tasks)->check(whole_number_between(1, kMostTasks));
     command->callback([options] { faults::work(options->worker); });
 }
 

@@ -1,4 +1,4 @@
-#include "campaigns/engine/slurm.h"
+#include "campaigns/jobs/slurm.h"
 
 #include "base/error.h"
 #include "base/text_file.h"
@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace puckloop::faults {
+namespace puckloop::jobs {
 
 namespace fs = std::filesystem;
 
@@ -28,13 +28,13 @@ constexpr int kRounds = 3;
 constexpr useconds_t kPoll = 500'000;  ///< us between questions to the controller
 constexpr int kPatience = 10;          ///< questions in a row without an answer
 
-struct Said {
+struct Reply {
     int status = 127;
     std::string text;  ///< standard output and error
 };
 
 /// Runs a Slurm command and waits for it.
-Said ask(std::vector<std::string> words) {
+Reply ask(std::vector<std::string> words) {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
     posix_spawn_file_actions_t actions;
@@ -52,24 +52,24 @@ Said ask(std::vector<std::string> words) {
     const int error = ::posix_spawnp(&id, arguments[0], &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     ::close(ends[1]);
-    Said said;
+    Reply reply;
     if (error == 0) {
         std::array<char, 4096> part{};
         for (;;) {
             const auto count = ::read(ends[0], part.data(), part.size());
             if (count < 0 && errno == EINTR) continue;
             if (count <= 0) break;
-            said.text.append(part.data(), static_cast<std::size_t>(count));
+            reply.text.append(part.data(), static_cast<std::size_t>(count));
         }
         int status = 0;
         while (::waitpid(id, &status, 0) < 0 && errno == EINTR) {
         }
-        said.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        reply.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
     ::close(ends[0]);
-    while (!said.text.empty() && said.text.back() == '\n')
-        said.text.pop_back();
-    return said;
+    while (!reply.text.empty() && reply.text.back() == '\n')
+        reply.text.pop_back();
+    return reply;
 }
 
 /// One name for all jobs of a results folder.
@@ -88,9 +88,9 @@ fs::path folder_of(const SlurmOptions& options) {
 /// asked again.
 std::string tasks_left(const std::string& name) {
     for (int tries = 1;; ++tries) {
-        const Said said = ask({"squeue", "--noheader", "--array", "--name", name, "--format", "%T %r"});
-        if (said.status == 0) return said.text;
-        if (tries == kPatience) throw RunError(fmt::format("squeue: {}", said.text));
+        const Reply reply = ask({"squeue", "--noheader", "--array", "--name", name, "--format", "%T %r"});
+        if (reply.status == 0) return reply.text;
+        if (tries == kPatience) throw RunError(fmt::format("squeue: {}", reply.text));
         ::usleep(kPoll);
     }
 }
@@ -119,7 +119,7 @@ void end_jobs(const std::string& name) {
 /// Hands over whole lines of all result files from where the last call stopped.
 class Collector {
   public:
-    Collector(fs::path folder, const TakeVerdict& take) : folder_(std::move(folder)), take_(take) {}
+    Collector(fs::path folder, const TakeResult& take) : folder_(std::move(folder)), take_(take) {}
 
     void collect() {
         std::set<fs::path> files;
@@ -148,7 +148,7 @@ class Collector {
 
   private:
     fs::path folder_;
-    const TakeVerdict& take_;
+    const TakeResult& take_;
     std::map<fs::path, std::streamoff> read_;
 };
 
@@ -166,29 +166,30 @@ std::string quoted(const std::string& word) {
     return text + "'";
 }
 
-void submit(const SlurmOptions& options, const std::vector<Case>& cases, int round) {
+void submit(const SlurmOptions& options, const std::vector<Job>& jobs, int round) {
     const fs::path folder = folder_of(options), script = folder / "task.sh";
     std::string list;
-    for (const Case& one : cases)
-        list += to_json(one).dump() + "\n";
+    for (const Job& one : jobs)
+        list += one.what.dump() + "\n";
     const fs::path file = folder / fmt::format("{}.cases", round);
     write_file(file, list);
-    const int tasks = std::min(options.tasks, static_cast<int>(cases.size()));
+    const int tasks = std::min(options.tasks, static_cast<int>(jobs.size()));
+    std::string command = quoted(fs::read_symlink("/proc/self/exe").string());
+    for (const std::string& word : options.crew.words)
+        command += " " + quoted(word);
     write_file(script,
-               fmt::format("#!/bin/sh\nexec {} faults worker {} {} --cases {} --results "
-                           "{}/{}-$SLURM_ARRAY_TASK_ID.results --task $SLURM_ARRAY_TASK_ID --tasks {}\n",
-                           quoted(fs::read_symlink("/proc/self/exe").string()),
-                           quoted(options.campaign.string()), quoted(options.out.string()),
-                           quoted(file.string()), quoted(folder.string()), round, tasks));
+               fmt::format("#!/bin/sh\nexec {} --cases {} --results {}/{}-$SLURM_ARRAY_TASK_ID.results "
+                           "--task $SLURM_ARRAY_TASK_ID --tasks {}\n",
+                           command, quoted(file.string()), quoted(folder.string()), round, tasks));
     const std::string name = job_name(options.out);
     for (int tries = 1;; ++tries) {
-        const Said said =
+        const Reply reply =
             ask({"sbatch", "--parsable", "--job-name", name, "--array", fmt::format("0-{}", tasks - 1),
                  "--ntasks", "1", "--cpus-per-task", "1", "--output", (folder / "%A_%a.log").string(),
                  "--open-mode", "append", script.string()});
         // An answer that came too late was none, but the tasks are there.
-        if (said.status == 0 || any_left(name)) return;
-        if (tries == kRounds) throw RunError(fmt::format("sbatch: {}", said.text));
+        if (reply.status == 0 || any_left(name)) return;
+        if (tries == kRounds) throw RunError(fmt::format("sbatch: {}", reply.text));
     }
 }
 
@@ -207,17 +208,17 @@ void end_tasks(const SlurmOptions& options) {
     end_jobs(job_name(options.out));
 }
 
-void resume_slurm(const SlurmOptions& options, const TakeVerdict& take) {
+void resume_slurm(const SlurmOptions& options, const TakeResult& take) {
     if (!fs::exists(folder_of(options))) return;
     end_tasks(options);
     Collector(folder_of(options), take).collect();
 }
 
-void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, const TakeVerdict& take) {
+void run_slurm(const SlurmOptions& options, const std::vector<Job>& jobs, const TakeResult& take) {
     const std::string name = job_name(options.out);
     clean(folder_of(options));
     Collector collector(folder_of(options), take);
-    std::vector<Case> left = cases;
+    std::vector<Job> left = jobs;
     for (int round = 0; round < kRounds && !left.empty(); ++round) {
         submit(options, left, round);
         for (std::string tasks = tasks_left(name); !tasks.empty(); tasks = tasks_left(name)) {
@@ -238,7 +239,7 @@ void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, cons
             ::usleep(kPoll);
         }
         collector.collect();
-        std::erase_if(left, [&](const Case& one) { return collector.got.contains(one.id); });
+        std::erase_if(left, [&](const Job& one) { return collector.got.contains(one.id); });
     }
     if (left.empty()) {
         std::error_code ignored;
@@ -247,10 +248,11 @@ void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, cons
     }
     const auto problem = collector.problems.find(left.front().id);
     throw RunError(
-        fmt::format("case {}: {}; the results so far are kept, the same command goes on", left.front().id,
+        fmt::format("{} {}: {}; the results so far are kept, the same command goes on", options.crew.noun,
+                    left.front().id,
                     problem != collector.problems.end()
                         ? problem->second
                         : fmt::format("no task brought it (logs in {})", folder_of(options).string())));
 }
 
-}  // namespace puckloop::faults
+}  // namespace puckloop::jobs

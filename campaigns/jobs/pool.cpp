@@ -1,7 +1,6 @@
-#include "campaigns/engine/pool.h"
+#include "campaigns/jobs/pool.h"
 
 #include "base/error.h"
-#include "campaigns/engine/outcome.h"
 
 #include <fmt/format.h>
 
@@ -21,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace puckloop::faults {
+namespace puckloop::jobs {
 
 namespace {
 
@@ -38,11 +37,13 @@ class Worker {
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-        std::string words[] = {"puckloop", "faults", "worker", options.campaign.string(),
-                               options.out.string()};
-        char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
-                             words[3].data(), words[4].data(), nullptr};
-        const int error = ::posix_spawn(&id_, "/proc/self/exe", &actions, nullptr, arguments, environ);
+        std::vector<std::string> words{"puckloop"};
+        words.insert(words.end(), options.crew.words.begin(), options.crew.words.end());
+        std::vector<char*> arguments;
+        for (std::string& word : words)
+            arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        const int error = ::posix_spawn(&id_, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
         ::close(ends[1]);
         socket_ = ends[0];
@@ -60,9 +61,9 @@ class Worker {
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
 
-    void give(const Case& one) {
+    void give(const Job& one) {
         busy = one;
-        std::string line = to_json(one).dump() + '\n';
+        std::string line = one.what.dump() + '\n';
         std::size_t done = 0;
         while (done < line.size()) {
             const auto count = ::send(socket_, line.data() + done, line.size() - done, MSG_NOSIGNAL);
@@ -99,7 +100,7 @@ class Worker {
     int socket() const { return socket_; }
     pid_t id() const { return id_; }
 
-    std::optional<Case> busy;
+    std::optional<Job> busy;
 
   private:
     pid_t id_ = -1;
@@ -109,9 +110,8 @@ class Worker {
 
 class Pool {
   public:
-    Pool(const PoolOptions& options, const std::vector<Case>& cases,
-         const std::function<void(int, const nlohmann::json&)>& take)
-        : options_(options), waiting_(cases.begin(), cases.end()), take_(take) {}
+    Pool(const PoolOptions& options, const std::vector<Job>& jobs, const TakeResult& take)
+        : options_(options), waiting_(jobs.begin(), jobs.end()), take_(take) {}
 
     void run() {
         const auto count = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs), waiting_.size());
@@ -129,7 +129,7 @@ class Pool {
     void give_next(Worker& worker) {
         worker.busy.reset();
         if (waiting_.empty() || !problem_.empty()) return;
-        const Case next = waiting_.front();
+        const Job next = waiting_.front();
         waiting_.pop_front();
         worker.give(next);
     }
@@ -154,7 +154,7 @@ class Pool {
         if (!worker.read(line)) return replace(index);
         if (line.empty()) return;
         const nlohmann::json result = nlohmann::json::parse(line);
-        const Case one = worker.busy.value();
+        const Job one = worker.busy.value();
         if (result.contains("problem"))
             try_again(one, result.at("problem"), false);
         else
@@ -163,7 +163,7 @@ class Pool {
     }
 
     void replace(std::size_t index) {
-        const std::optional<Case> lost = workers_[index]->busy;
+        const std::optional<Job> lost = workers_[index]->busy;
         const pid_t id = workers_[index]->id();
         const std::string end = workers_[index]->wait();
         if (lost) try_again(*lost, fmt::format("worker {} died ({})", id, end), true);
@@ -171,23 +171,23 @@ class Pool {
         give_next(*workers_[index]);
     }
 
-    void try_again(const Case& one, const std::string& why, bool died) {
+    void try_again(const Job& one, const std::string& why, bool died) {
         if (++tries_[one.id] < kTries) {
-            fmt::print(stderr, "puckloop: case {}: {}: it is run again\n", one.id, why);
+            fmt::print(stderr, "puckloop: {} {}: {}: it is run again\n", options_.crew.noun, one.id, why);
             waiting_.push_front(one);
-        } else if (died) {
-            const std::string text = fmt::format("three workers died of it, the last so: {}", why);
-            take_(one.id, to_json(failed_verdict(one.faults.size(), text)));
+        } else if (died && options_.deadly) {
+            take_(one.id,
+                  options_.deadly(one, fmt::format("three workers died of it, the last so: {}", why)));
         } else if (problem_.empty()) {
             problem_ = fmt::format(
-                "case {} failed {} times: {}; the results so far are kept, the same command goes on", one.id,
-                kTries, why);
+                "{} {} failed {} times: {}; the results so far are kept, the same command goes on",
+                options_.crew.noun, one.id, kTries, why);
         }
     }
 
     const PoolOptions& options_;
-    std::deque<Case> waiting_;
-    const std::function<void(int, const nlohmann::json&)>& take_;
+    std::deque<Job> waiting_;
+    const TakeResult& take_;
     std::vector<std::unique_ptr<Worker>> workers_;
     std::map<int, int> tries_;
     std::string problem_;
@@ -195,9 +195,8 @@ class Pool {
 
 }  // namespace
 
-void run_local(const PoolOptions& options, const std::vector<Case>& cases,
-               const std::function<void(int id, const nlohmann::json& verdict)>& take) {
-    if (!cases.empty()) Pool(options, cases, take).run();
+void run_local(const PoolOptions& options, const std::vector<Job>& jobs, const TakeResult& take) {
+    if (!jobs.empty()) Pool(options, jobs, take).run();
 }
 
-}  // namespace puckloop::faults
+}  // namespace puckloop::jobs

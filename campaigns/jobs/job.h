@@ -1,0 +1,26 @@
+#pragma once
+// A unit of work that some worker carries out: one run of a campaign or of an experiment.
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace puckloop::jobs {
+
+struct Job {
+    int id = 0;           ///< from 1
+    nlohmann::json what;  ///< one line for the worker
+};
+
+/// How workers are started, and what users read of them.
+struct Crew {
+    std::vector<std::string> words;  ///< of puckloop: a worker that reads jobs from its standard input
+    std::string noun = "case";       ///< what a job is in messages
+};
+
+/// Takes what came of a job; called once for each.
+using TakeResult = std::function<void(int id, const nlohmann::json& result)>;
+
+}  // namespace puckloop::jobs
