@@ -19,6 +19,7 @@ void declare_disasm(Command& app, int& status);
 void declare_trace(Command& app, int& status);
 void declare_frames(Command& app, int& status);
 void declare_faults(Command& app, int& status);
+void declare_experiment(Command& app, int& status);
 void declare_upload(Command& app, int& status);
 void declare_gap(Command& app, int& status);  ///< its line of the help
 void declare_bench(Command& app, int& status);
@@ -40,6 +41,7 @@ inline constexpr std::array kCommands{
     declare_trace,
     declare_frames,
     declare_faults,
+    declare_experiment,
     declare_upload,
     declare_gap,
     declare_bench,

@@ -92,6 +92,7 @@ const std::vector<std::string> kFolders = {
     "bench/upload",
     "bench",
     "replay",
+    "campaigns/statistics",
     "campaigns/jobs",
     "campaigns",
     "reproductions",

@@ -8,7 +8,7 @@ import unittest
 from kit import SOURCE, InFolder, puckloop
 
 COMMANDS = ["run", "replay", "act", "exec", "new", "list", "check", "images", "schema", "trace", "frames", "faults",
-            "gap", "bench", "test", "step", "asm", "disasm", "upload", "help", "version"]
+            "experiment", "gap", "bench", "test", "step", "asm", "disasm", "upload", "help", "version"]
 
 
 class Help(unittest.TestCase):

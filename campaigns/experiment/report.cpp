@@ -1,0 +1,183 @@
+#include "campaigns/experiment/report.h"
+
+#include "base/quantile.h"
+#include "base/svg.h"
+#include "campaigns/experiment/box_plot.h"
+#include "campaigns/experiment/progress.h"
+#include "campaigns/experiment/tables.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::swarm {
+
+namespace {
+
+constexpr const char* kHead = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Experiment {0}</title><style>
+body{{font:14px/1.4 system-ui,sans-serif;margin:2em;color:#222}} h2{{margin-top:1.6em}}
+table{{border-collapse:collapse}} td,th{{border:1px solid #ccc;padding:2px 6px;text-align:left;vertical-align:top}}
+td.n{{text-align:right}} .wide{{overflow-x:auto}}
+</style></head><body>
+<h1>Experiment {0}</h1>
+)";
+
+std::string number(double value) {
+    return std::isfinite(value) ? fmt::format("<td class=n>{:.6g}</td>", value) : std::string("<td></td>");
+}
+
+std::string text_cell(const std::string& text) {
+    return "<td>" + escaped(text) + "</td>";
+}
+
+std::string head_row(std::initializer_list<const char*> names) {
+    std::string row = "<tr>";
+    for (const char* name : names)
+        row += fmt::format("<th scope=col>{}</th>", name);
+    return row + "</tr>\n";
+}
+
+std::string plots(const Findings& findings, const std::vector<Cell>& cells) {
+    std::string html;
+    const Experiment& experiment = findings.experiment;
+    for (std::size_t condition = 0; condition < experiment.conditions.size(); ++condition) {
+        std::vector<std::pair<std::string, std::vector<double>>> samples;
+        for (std::size_t program = 0; program < experiment.programs.size(); ++program)
+            samples.emplace_back(experiment.programs[program].name,
+                                 cell_of(cells, program, condition).values());
+        html += "<div class=wide>" +
+                box_plot(experiment.conditions[condition].name,
+                         more_is_better(findings) ? "score (more is better)" : "score (less is better)",
+                         samples) +
+                "</div>\n";
+    }
+    return html;
+}
+
+std::string scores(const Findings& findings, const std::vector<Cell>& cells) {
+    std::string html =
+        "<h2>Scores</h2>\n<p>Intervals of medians are between order statistics: 95 % or more, where no other "
+        "coverage is given.</p>\n<table>" +
+        head_row({"program", "condition", "runs", "without a score", "median", "interval", "quartiles",
+                  "least", "most", "mean", "s per run"});
+    for (const Cell& cell : cells) {
+        const std::vector<double> values = cell.values();
+        double sum = 0.0;
+        for (const double value : values)
+            sum += value;
+        const std::size_t runs = values.size() + cell.failed;
+        html +=
+            "<tr>" + text_cell(findings.experiment.programs[cell.program].name) +
+            text_cell(findings.experiment.conditions[cell.condition].name) +
+            fmt::format("<td class=n>{}</td><td class=n>{}</td>", values.size(), cell.failed) +
+            number(median(values)) +
+            text_cell(values.empty() ? std::string() : interval_text(statistics::median_interval(values))) +
+            text_cell(values.empty()
+                          ? std::string()
+                          : fmt::format("{:.6g}, {:.6g}", quantile(values, 0.25), quantile(values, 0.75))) +
+            number(quantile(values, 0.0)) + number(quantile(values, 1.0)) +
+            number(sum / static_cast<double>(values.size())) + number(cell.wall / static_cast<double>(runs)) +
+            "</tr>\n";
+    }
+    return html + "</table>\n";
+}
+
+std::string tests(const std::vector<Comparison>& comparisons) {
+    if (comparisons.empty()) return {};
+    std::string html = "<h2>Comparisons</h2>\n<p>Runs with the same seed are pairs. Wilcoxon's signed-rank "
+                       "test is two-sided, "
+                       "zero differences are left out; its p is adjusted by Holm's method over the pairs of "
+                       "a table. Friedman's "
+                       "test has the seeds as blocks, with the chi-square approximation.</p>\n";
+    for (const Comparison& comparison : comparisons) {
+        html += fmt::format("<h3>{}</h3>\n<p>{} seeds have a score for each.", escaped(comparison.of),
+                            comparison.seeds);
+        if (comparison.friedman)
+            html += fmt::format(" Friedman test: chi-square {:.4g}, {} degrees of freedom, p {}.",
+                                comparison.friedman->chi_square, comparison.friedman->freedom,
+                                escaped(p_text(comparison.friedman->p)));
+        html += "</p>\n<table>" + head_row({"pair", "median difference", "interval", "test", "statistic", "n",
+                                            "p", "p by Holm"});
+        for (const Comparison::Pair& pair : comparison.pairs)
+            html += "<tr>" +
+                    text_cell(comparison.treatments[pair.a] + " - " + comparison.treatments[pair.b]) +
+                    number(pair.difference) + text_cell(interval_text(pair.interval)) +
+                    text_cell(pair.test.method) + number(pair.test.statistic) +
+                    fmt::format("<td class=n>{}</td>", pair.test.n) + text_cell(p_text(pair.test.p)) +
+                    text_cell(p_text(pair.adjusted)) + "</tr>\n";
+        html += "</table>\n";
+    }
+    return html;
+}
+
+std::string list(const char* what, const std::vector<std::string>& names) {
+    if (names.empty()) return {};
+    std::string html = fmt::format("<p>{}: ", what);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        html += (i == 0 ? "" : "; ") + escaped(names[i]);
+    return html + "</p>\n";
+}
+
+std::string agreement_html(const Agreement& agreement, const std::filesystem::path& against) {
+    std::string html = fmt::format("<h2>Against {}</h2>\n<p>The drop is how much worse the reference's "
+                                   "median is; intervals are percentile "
+                                   "bootstraps of 2000 draws, 95 %.</p>\n<table>",
+                                   escaped(against.filename().string()));
+    html += head_row({"program", "condition", "runs here", "runs there", "median here", "median there",
+                      "drop", "interval", "test", "U", "p"});
+    for (const Drop& drop : agreement.drops)
+        html += "<tr>" + text_cell(drop.program) + text_cell(drop.condition) +
+                fmt::format("<td class=n>{}</td><td class=n>{}</td>", drop.here, drop.there) +
+                number(drop.median_here) + number(drop.median_there) + number(drop.drop) +
+                text_cell(interval_text(drop.interval)) + text_cell(drop.test.method) +
+                number(drop.test.statistic) + text_cell(p_text(drop.test.p)) + "</tr>\n";
+    html += "</table>\n<table>" + head_row({"over all programs", "value", "interval"});
+    const auto row = [&](const char* name, double value, const statistics::Interval& interval) {
+        if (std::isfinite(value))
+            html += fmt::format("<tr><td>{}</td>{}{}</tr>\n", name, number(value),
+                                text_cell(interval_text(interval)));
+    };
+    row("rank correlation of medians (Spearman)", agreement.rank_correlation, agreement.rank_interval);
+    row("mean error (reference minus here)", agreement.mean_error, agreement.error_interval);
+    row("mean absolute error", agreement.mean_absolute, agreement.absolute_interval);
+    return html + "</table>\n" + list("Not in the reference", agreement.only_here) +
+           list("In the reference only", agreement.only_there);
+}
+
+std::string failures(const Findings& findings) {
+    std::string html;
+    for (const Run& run : runs_of(findings.experiment)) {
+        const auto found = findings.results.find(run.id);
+        if (found == findings.results.end() || found->second.failed.empty()) continue;
+        html += fmt::format("<tr><td class=n>{}</td>", run.id) +
+                text_cell(findings.experiment.programs[run.program].name) +
+                text_cell(findings.experiment.conditions[run.condition].name) +
+                fmt::format("<td class=n>{}</td>", run.seed) + text_cell(found->second.failed) + "</tr>\n";
+    }
+    if (html.empty()) return {};
+    return "<h2>Runs that failed</h2>\n<p>Their scores do not count.</p>\n<table>" +
+           head_row({"run", "program", "condition", "seed", "why"}) + html + "</table>\n";
+}
+
+}  // namespace
+
+std::string report_html(const Findings& findings, const std::vector<Cell>& cells,
+                        const std::vector<Comparison>& comparisons, const std::optional<Agreement>& agreement,
+                        const std::filesystem::path& against) {
+    const Experiment& experiment = findings.experiment;
+    std::string html = fmt::format(kHead, escaped(experiment.file.filename().string()));
+    double wall = 0.0;
+    for (const auto& [id, result] : findings.results)
+        wall += result.wall;
+    html += fmt::format("<p>Scenario {}, {} runs: {} programs and conditions, {} seeds each. Wall time {}, "
+                        "all runs one after the other.</p>\n",
+                        escaped(experiment.scenario.string()), findings.results.size(),
+                        experiment.programs.size() * experiment.conditions.size(), experiment.seeds.size(),
+                        duration_text(wall));
+    html += plots(findings, cells) + scores(findings, cells) + tests(comparisons);
+    if (agreement) html += agreement_html(*agreement, against);
+    return html + failures(findings) + "</body></html>\n";
+}
+
+}  // namespace puckloop::swarm

@@ -1,0 +1,74 @@
+// puckloop experiment: programs, conditions and seeds as runs, and what their scores show (docs/swarm.md).
+
+#include "base/error.h"
+#include "campaigns/experiment/conduct.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
+#include "tools/commands.h"
+
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+struct Options {
+    swarm::ExperimentOptions experiment;
+    jobs::WorkerTask share;
+    bool worker = false;
+};
+
+constexpr int kMostJobs = 256, kMostTasks = 10'000;
+
+/// Status 1 if a run failed.
+int conduct(const Options& options) {
+    if (options.experiment.file.empty())
+        throw InputError("", "experiment", "nothing given", "an experiment file (docs/swarm.md)");
+    if (!options.worker) return swarm::run_experiment(options.experiment) ? 0 : 1;
+    swarm::work(options.experiment, options.share);
+    return 0;
+}
+
+}  // namespace
+
+void declare_experiment(Command& app, int& status) {
+    auto options = std::make_shared<Options>();
+    Command* command = app.add_subcommand(
+        "experiment",
+        "run programs under conditions with many seeds, or what is left of them, and compare scores");
+    auto& experiment = options->experiment;
+    command->add_option("file", experiment.file, "experiment file (docs/swarm.md)")->type_name("FILE");
+    command->add_option("--out", experiment.out, "folder for the results (default: out/<name of the file>)")
+        ->check(not_empty())
+        ->type_name("DIR");
+    command->add_option("--jobs,-j", experiment.jobs, "runs at a time on this machine (default: its cores)")
+        ->check(whole_number_between(1, kMostJobs))
+        ->type_name("N");
+    command
+        ->add_option(
+            "--against", experiment.against,
+            "CSV file with the columns program and score, condition if there are several: scores of real "
+            "robots or of another model, set beside these")
+        ->check(not_empty())
+        ->type_name("CSV");
+    command->add_flag("--slurm", experiment.slurm, "carry out the runs as job arrays of a Slurm cluster");
+    command->add_option("--tasks", experiment.tasks, "with --slurm: tasks of an array")
+        ->check(whole_number_between(1, kMostTasks))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_flag("--fresh", experiment.fresh, "drop the results that are in the folder and begin again");
+    // How an experiment starts its workers.
+    command->add_flag("--worker", options->worker)->group("");
+    command->add_option("--cases", options->share.jobs)->group("");
+    command->add_option("--results", options->share.results)->group("");
+    command->add_option("--task", options->share.task)->check(whole_number_between(0, kMostTasks))->group("");
+    command->footer("Examples:\n"
+                    "  puckloop experiment experiments/aggregation.toml\n"
+                    "  puckloop experiment experiments/aggregation.toml --against robots.csv");
+    command->callback([options, &status] {
+        options->share.tasks = options->experiment.tasks;
+        status = conduct(*options);
+    });
+}
+
+}  // namespace puckloop::tools
