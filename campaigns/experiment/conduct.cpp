@@ -31,6 +31,17 @@ fs::path run_folder(const fs::path& out, int id) {
     return out / "runs" / std::to_string(id);
 }
 
+/// All that an experiment writes.
+const std::vector<std::string> kResults{
+    "experiment.db", "experiment.db-journal", "boots", "slurm", "work", "runs", "results.csv", "report.html"};
+
+/// A run that three workers died of has no score.
+nlohmann::json failed_run(const jobs::Job&, const std::string& why) {
+    RunResult result;
+    result.failed = why;
+    return to_json(result);
+}
+
 class Conduct {
   public:
     explicit Conduct(const ExperimentOptions& options)
@@ -42,7 +53,7 @@ class Conduct {
         if (options_.slurm) jobs::check_slurm();
         runs_ = runs_of(experiment_);
         check_runs();
-        lock_.emplace(out_);
+        lock_.emplace(out_, kResults);
         if (options_.fresh) drop();
         store_.emplace(out_ / "experiment.db", ExperimentStore::Access::Write);
         claim();
@@ -77,8 +88,7 @@ class Conduct {
     /// Only what an experiment writes.
     void drop() {
         jobs::end_tasks(slurm());
-        for (const char* name : {"experiment.db", "experiment.db-journal", "boots", "slurm", "work", "runs",
-                                 "results.csv", "report.html"})
+        for (const std::string& name : kResults)
             jobs::remove_folder(out_ / name);
     }
 
@@ -106,7 +116,9 @@ class Conduct {
         if (options_.slurm)
             jobs::run_slurm(slurm(), left, take());
         else
-            jobs::run_local({crew(), workers(), interrupt_.flag()}, left, take());
+            jobs::run_local(
+                {.crew = crew(), .jobs = workers(), .deadly = failed_run, .interrupted = interrupt_.flag()},
+                left, take());
     }
 
     jobs::TakeResult take() {

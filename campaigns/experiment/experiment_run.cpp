@@ -128,7 +128,8 @@ RunResult execute(const Experiment& experiment, const Run& run, const fs::path& 
     fs::remove_all(folder, ignored);
     make_folder(folder);
     ::setenv("PUCKLOOP_CACHE", boots.c_str(), 1);
-    jobs::run_isolated([&] {
+    RunResult result;
+    const auto run_once = [&] {
         tools::RunRequest request = request_of(experiment, run);
         request.out = folder;
         const cosim::Outcome outcome = tools::run_scenario(tools::set_up(request), request, {}, nullptr);
@@ -136,9 +137,15 @@ RunResult execute(const Experiment& experiment, const Run& run, const fs::path& 
         if (!outcome.success && (outcome.node.empty() || jobs::names_full_disk(outcome.text)))
             throw RunError(outcome.text);
         jobs::check_room(folder);
-    });
+    };
+    try {
+        jobs::run_isolated(run_once);
+    } catch (const jobs::Broke& broke) {
+        jobs::check_room(folder);
+        result.failed = broke.what();
+        return result;
+    }
     const json report = read_report(folder);
-    RunResult result;
     if (!report.value("success", false)) result.failed = report.value("ended_why", "it failed");
     const json::json_pointer place(experiment.score);
     if (result.failed.empty() && report.contains(place) && report.at(place).is_number())
