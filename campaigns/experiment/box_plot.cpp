@@ -4,6 +4,7 @@
 #include "base/quantile.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace puckloop::swarm {
 
