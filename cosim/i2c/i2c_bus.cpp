@@ -152,7 +152,7 @@ void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
         return;
     case Bus::Owned:
         if (owner_ == port && !pending_) {
-            release_devices(phase.start, false);
+            release_devices(phase.start, Ending::RepeatedStart);
             address(port, phase, 0);
             return;
         }
@@ -207,13 +207,13 @@ void I2cBusNode::stop_from(PortIndex port, const I2cPhase& phase) {
         changes_ = std::max(changes_, free);
         return;
     }
-    release_devices(phase.start, true);
+    release_devices(phase.start, Ending::Stop);
     bus_ = Bus::Stopping;
 }
 
 void I2cBusNode::bus_freed() {
     const Time now = changes_;
-    if (bus_ == Bus::Recovering) release_devices(now, true);
+    if (bus_ == Bus::Recovering) release_devices(now, Ending::Stop);
     bus_ = Bus::Free;
     changes_ = kNever;
     if (begin_incomplete()) return;

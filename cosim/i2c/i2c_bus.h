@@ -196,7 +196,9 @@ class I2cBusNode final : public Node {
     Time next_event() const;
     void take_answer(const I2cAnswer& reply, const std::string& name);
     void settle();
-    void release_devices(Time now, bool stop_seen);
+    /// How the transfer of the devices that are addressed ends.
+    enum class Ending { Stop, RepeatedStart, Reset };
+    void release_devices(Time now, Ending ending);
     bool own_master(PortIndex device, PortIndex master) const;
     void hang();
     void let_go(const I2cPhase& phase);

@@ -174,19 +174,23 @@ void I2cBusNode::settle() {
            done.earliest);
 }
 
-/// `stop_seen`: by a STOP, which all who watch the bus notice, and not by a START.
-void I2cBusNode::release_devices(Time now, bool stop_seen) {
+/// A STOP is noticed by all who watch the bus. A repeated START reaches a device that watches all of them by
+/// itself, and is no STOP: a ten-bit address holds on.
+void I2cBusNode::release_devices(Time now, Ending ending) {
     I2cPhase stop;
     stop.start = now;
     for (std::size_t i = 0; i < options_.devices.size(); ++i) {
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
         const bool addressed = std::find(addressed_devices_.begin(), addressed_devices_.end(), device) !=
                                addressed_devices_.end();
-        if (stop_seen && !addressed && options_.devices[i].master && !own_master(device, owner_))
+        if (ending == Ending::Stop && !addressed && options_.devices[i].master && !own_master(device, owner_))
             answers_.push_back({now + told_after(device), device, stop});
     }
-    for (const PortIndex device : addressed_devices_)
-        answers_.push_back({now + told_after(device), device, stop});
+    for (const PortIndex device : addressed_devices_) {
+        const bool watches = options_.devices[device - options_.masters.size()].master.has_value();
+        if (ending != Ending::RepeatedStart || !watches)
+            answers_.push_back({now + told_after(device), device, stop});
+    }
     addressed_devices_.clear();
     emitted_at_ = now + nominal_period_;
     for (I2cSlave* slave : addressed_)

@@ -20,7 +20,8 @@ I2cPhase I2cBusNode::begin_phase(PortIndex port, const I2cPhase& phase, Time ear
     pending.busy_until = damage.busy_until;
     if (damage.second_device) take_answer({true, damage.value, 0}, {});
     if (damage.reset) reset_devices(phase.start);
-    if (damage.stopped || damage.restarted) release_devices(phase.start, damage.stopped);
+    if (damage.stopped || damage.restarted)
+        release_devices(phase.start, damage.stopped ? Ending::Stop : Ending::RepeatedStart);
     if (damage.restarted) {
         pending.addresses = true;
         damage.phase.kind = I2cPhaseKind::Start;
@@ -52,7 +53,7 @@ void I2cBusNode::reset_devices(Time now) {
     for (I2cSlave* slave : addressed_)
         slave->reset(emit_);
     addressed_.clear();
-    release_devices(now, false);  // those in other nodes only forget the transfer
+    release_devices(now, Ending::Reset);  // those in other nodes only forget the transfer
 }
 
 /// The bus is free. True if a fault begins a transfer, one that nobody will end.
