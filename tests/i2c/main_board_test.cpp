@@ -90,7 +90,7 @@ TEST_CASE("the byte that is in I2CTRN before the ninth clock leaves at once, or 
         bus.hertz = hertz;
         bus.main_board = kEager;
         Time at = 10 * kMillisecond;
-        for (const std::uint16_t count : {1, 2, 1, 1, 2, 2})
+        for (const std::uint16_t count : std::initializer_list<std::uint16_t>{1, 2, 1, 1, 2, 2})
             bus.linux_board.push_back({at += 5 * kMillisecond, reading(0x1F, 0, count)});
         bus.linux_board.push_back({at += 5 * kMillisecond, writing(0x1F, {1})});
         bus.run();

@@ -10,6 +10,7 @@ namespace puckloop::tests {
 
 // Asks its flag in a loop: 0x5A to whoever reads.
 inline const std::string kPolling = R"(
+        .org 0x200
 main:   mov #0x0900, w15
         mov #0x27f0, w0
         mov w0, SPLIM

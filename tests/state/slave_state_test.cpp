@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 using namespace puckloop;
 using namespace puckloop::tests;

@@ -137,7 +137,7 @@ class Slave {
     std::size_t compared_ = 0;
 };
 
-constexpr int kSeeds = 24, kActions = 400;
+constexpr int kSeeds = 240, kActions = 400;
 
 }  // namespace
 

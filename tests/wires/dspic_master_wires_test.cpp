@@ -98,7 +98,7 @@ class Comparison {
             auto con = static_cast<std::uint16_t>(chip_.read(sfr::I2CCON) & ~kAckdt);
             if (!acknowledges) con |= kAckdt;
             chip_.write(sfr::I2CCON, con);
-            if (acknowledges) unacknowledged_ = false;
+            if (received_) unacknowledged_ = !acknowledges;
         }
         chip_.request(bit_of(activity));
         wires_.begin(activity);
@@ -130,7 +130,7 @@ class Comparison {
             expected.push_back(I2cPhaseKind::Acknowledge);
             ++seen_.unacknowledged;
         }
-        if (byte_follows) unacknowledged_ = false;
+        if (byte_follows) unacknowledged_ = received_ = false;
         if (activity == Activity::Transmit)
             expected.push_back(after_start_ ? I2cPhaseKind::Start : I2cPhaseKind::Write);
         if (activity == Activity::Receive) expected.push_back(I2cPhaseKind::Read);
@@ -154,7 +154,7 @@ class Comparison {
         } else if (activity == Activity::Receive) {
             chip_.answer(I2cPhaseKind::Data, others, true);
             after_start_ = false;
-            unacknowledged_ = true;
+            unacknowledged_ = received_ = true;
             ++seen_.received;
         } else {
             const Cycle end = chip_.now + kLong;
@@ -165,7 +165,7 @@ class Comparison {
         wires_.finish(others, low);
         if (activity == Activity::Start || activity == Activity::Restart) {
             after_start_ = true;
-            unacknowledged_ = false;
+            unacknowledged_ = received_ = false;
         }
     }
 
@@ -192,7 +192,7 @@ class Comparison {
     MasterBench chip_;
     WireMaster wires_;
     int interrupts_ = 0;
-    bool after_start_ = false, unacknowledged_ = false;
+    bool after_start_ = false, received_ = false, unacknowledged_ = false;
 };
 
 constexpr int kSeeds = 60, kSteps = 400;

@@ -267,7 +267,7 @@ std::vector<std::uint8_t> addresses(const WireDspic::Setup& setup) {
     return {0x2A, 0x2A, 0x2A, 0x2C, 0x00};
 }
 
-constexpr int kSeeds = 36, kActions = 400;
+constexpr int kSeeds = 72, kActions = 400;
 
 void check(const Seen& seen) {
     CHECK(seen.actions == seeds(kSeeds) * kActions);
