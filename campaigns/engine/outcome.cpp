@@ -43,18 +43,24 @@ std::size_t resets_of(const json& node) {
     return node.contains("resets") && node.at("resets").is_array() ? node.at("resets").size() : 0;
 }
 
-/// For how long the wheels of a robot turned after the last byte to its main board, s; below 0 if they stood
-/// before it, or if nobody sent it anything.
+/// For how long at most the wheels of a robot turned on after a byte to its main board until the next one, s;
+/// below 0 if they never did, or if nobody sent it anything.
 double blind_drive(const Profile& run, const std::string& robot, double end) {
-    double commanded = -1;
+    std::vector<double> commands;
     for (const auto& [name, sender] : run.senders)
         if (name.starts_with(robot + ".") && name.find(".i2c") == std::string::npos &&
             !name.ends_with(" from " + robot + ".pic"))
-            commanded = std::max(commanded, last_before(sender, end));
+            commands.insert(commands.end(), sender.times.begin(), sender.times.end());
+    std::sort(commands.begin(), commands.end());
     const auto turns = run.turns.find(robot);
-    if (commanded < 0 || turns == run.turns.end()) return -1;
-    const auto after = std::upper_bound(turns->second.begin(), turns->second.end(), end);
-    return after == turns->second.begin() ? -1 : *(after - 1) - commanded;
+    double longest = -1;
+    if (turns == run.turns.end()) return longest;
+    for (const double time : turns->second) {
+        if (time > end) break;
+        const auto next = std::upper_bound(commands.begin(), commands.end(), time);
+        if (next != commands.begin()) longest = std::max(longest, time - *(next - 1));
+    }
+    return longest;
 }
 
 /// The faults' evidence in the report: those of the case are the last ones.
@@ -176,7 +182,7 @@ struct Judge {
         return silent;
     }
 
-    /// Robots whose wheels turned for longer after the last byte to their main board than in the nominal run.
+    /// Robots whose wheels turned on for longer without a byte to their main board than in the nominal run.
     void notice_blind_drives() {
         const double end = std::min(end_of(nominal), end_of(run));
         for (const auto& [robot, turns] : run.turns) {

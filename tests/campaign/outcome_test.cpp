@@ -240,15 +240,23 @@ TEST_CASE("a robot whose wheels turn after the last command is one that drives o
     const double last = run.senders[kProgram].times.back();
     const auto blind = [&] {
         const Verdict verdict = judge(campaign, nominal, run, 1);
-        CHECK(verdict.outcome == Outcome::Hang);
         const auto found = std::find(verdict.symptoms.begin(), verdict.symptoms.end(),
                                      "wheels of r turned after the last command");
         return std::pair(found != verdict.symptoms.end(), verdict.detail);
     };
     SECTION("to the end") {
+        CHECK(judge(campaign, nominal, run, 1).outcome == Outcome::Hang);
         const auto [found, detail] = blind();
         CHECK(found);
         CHECK_THAT(detail, Catch::Contains(fmt::format("(for {:.3f} s)", 9.99 - last)));
+    }
+    SECTION("until commands come again") {
+        run.senders[kProgram].times.push_back(9.5);
+        CHECK(judge(campaign, nominal, run, 1).outcome == Outcome::Recovered);
+        const auto [found, detail] = blind();
+        CHECK(found);
+        CHECK_THAT(detail, Catch::Contains("wheels of r turned after the last command (for "));
+        CHECK_THAT(detail, !Catch::Contains(fmt::format("(for {:.3f} s)", 9.99 - last)));
     }
     SECTION("not if they stop soon") {
         std::erase_if(run.turns["r"],
