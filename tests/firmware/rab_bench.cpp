@@ -29,18 +29,21 @@ std::string lit_part(std::string chips) {
 }
 
 void RabBench::write(double time, std::vector<std::uint8_t> bytes) {
-    script_.push_back({static_cast<int>(script_.size()) + 1, cosim::from_seconds(time), kAddress, false,
-                       std::move(bytes), 0, 0});
+    script_.push_back({.line = static_cast<int>(script_.size()) + 1,
+                       .time = cosim::from_seconds(time),
+                       .address = kAddress,
+                       .bytes = std::move(bytes),
+                       .register_number = 0});
 }
 
 void RabBench::read(double time, int number, int count) {
-    script_.push_back({static_cast<int>(script_.size()) + 1,
-                       cosim::from_seconds(time),
-                       kAddress,
-                       true,
-                       {},
-                       static_cast<std::uint8_t>(number),
-                       count});
+    script_.push_back({.line = static_cast<int>(script_.size()) + 1,
+                       .time = cosim::from_seconds(time),
+                       .address = kAddress,
+                       .read = true,
+                       .bytes = {},
+                       .register_number = static_cast<std::uint8_t>(number),
+                       .count = count});
 }
 
 double RabBench::poll(double time) {
