@@ -167,7 +167,8 @@ void declare(std::ostream& out, const std::vector<Variable>& variables, const Un
                 << word(variables[n].name) << " $end\n";
         out << (inner ? "$upscope $end\n$upscope $end\n" : "$upscope $end\n");
     }
-    out << "$enddefinitions $end\n$dumpvars\n";
+    // With the time: libsigrok begins at the first one, and would not see a line leave its idle level there.
+    out << "$enddefinitions $end\n#0\n$dumpvars\n";
     for (std::size_t n = 0; n < variables.size(); ++n)
         out << variables[n].initial << identifier(n) << '\n';
     out << "$end\n";
@@ -234,7 +235,7 @@ void write_vcd(const RecordedTrace& trace, std::ostream& out, VcdValues* others,
     declare(out, declared, unit);
 
     ReorderBuffer<Change> buffer;
-    Time written = -1;
+    Time written = 0;
     const auto write_until = [&](Time end) {
         while (!buffer.empty() && buffer.first() < end) {
             const Time time = buffer.first() / unit.length;

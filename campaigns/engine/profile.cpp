@@ -162,7 +162,10 @@ std::string shape_of(const std::string& line) {
         }
         if (std::isdigit(letter) != 0) {
             if (shape.empty() || shape.back() != '#') shape += '#';
-        } else if (letter >= 0x20 && !(letter == '.' && !shape.empty() && shape.back() == '#')) {
+        } else if (letter == '.' && shape.ends_with('#') && i + 1 < line.size() &&
+                   std::isdigit(static_cast<unsigned char>(line[i + 1])) != 0) {
+            continue;  // of a number
+        } else if (letter >= 0x20) {
             shape += line[i];
         }
     }

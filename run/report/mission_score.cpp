@@ -15,7 +15,7 @@
 namespace puckloop::tools {
 
 nlohmann::ordered_json mission_score(const missions::Mission& mission,
-                                     const std::filesystem::path& trajectory) {
+                                     const std::filesystem::path& trajectory, double until) {
     nlohmann::ordered_json result{{"kind", mission.name},
                                   {"score", nullptr},
                                   {"better", missions::more_is_better(mission.kind) ? "more" : "less"},
@@ -37,6 +37,7 @@ nlohmann::ordered_json mission_score(const missions::Mission& mission,
         // Whole steps since the beginning; rows between them are ignored.
         const double steps = (paths[0].second[row].seconds - mission.begin) / mission.step;
         const std::int64_t step = std::llround(steps);
+        if (paths[0].second[row].seconds > until + mission.step / 2) break;
         if (step <= last || std::abs(steps - static_cast<double>(step)) > 1e-3) continue;
         last = step;
         for (std::size_t i = 0; i < paths.size(); ++i)
@@ -48,8 +49,9 @@ nlohmann::ordered_json mission_score(const missions::Mission& mission,
     return result;
 }
 
-std::string mission_summary(const missions::Mission& mission, const std::filesystem::path& trajectory) {
-    const nlohmann::ordered_json result = mission_score(mission, trajectory);
+std::string mission_summary(const missions::Mission& mission, const std::filesystem::path& trajectory,
+                            double until) {
+    const nlohmann::ordered_json result = mission_score(mission, trajectory, until);
     const auto steps = result.at("steps").get<std::uint64_t>();
     if (result.at("score").is_null())
         return fmt::format("mission {}: no score: {}", mission.name,

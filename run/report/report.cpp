@@ -11,10 +11,16 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace puckloop::tools {
 
 namespace {
+
+/// In s: behind it programs get their end signals.
+double end_of(const scenarios::Scenario& scenario) {
+    return scenario.duration.value_or(std::numeric_limits<double>::infinity());
+}
 
 using nlohmann::ordered_json;
 
@@ -172,7 +178,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
                         {"warnings", warnings_of(setup, outcome)},
                         {"unmodelled_registers", unmodelled_of(nodes)}};
     if (setup.scenario.mission)
-        report["mission"] = mission_score(*setup.scenario.mission, setup.out / "trajectory.csv");
+        report["mission"] =
+            mission_score(*setup.scenario.mission, setup.out / "trajectory.csv", end_of(setup.scenario));
     if (!setup.scenario.not_taken.empty()) report["not_taken_over"] = setup.scenario.not_taken;
     if (!setup.from.empty())
         report["from"] = {{"file", setup.from.string()},
@@ -190,7 +197,8 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
     text += states_summary(setup, outcome) + stats_summary(outcome) + faults_summary(outcome) +
             supply_resets_summary(outcome);
     if (setup.scenario.mission)
-        text += "\n" + mission_summary(*setup.scenario.mission, setup.out / "trajectory.csv");
+        text += "\n" + mission_summary(*setup.scenario.mission, setup.out / "trajectory.csv",
+                                       end_of(setup.scenario));
     const std::vector<std::string> warnings = warnings_of(setup, outcome);
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);

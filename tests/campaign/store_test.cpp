@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "campaigns/engine/store.h"
 #include "campaigns/engine/table.h"
+#include "campaigns/jobs/result_files.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -85,5 +86,5 @@ TEST_CASE("what is no campaign's database is refused") {
     CHECK_THROWS_AS(Store(file, Store::Access::Read), InputError);
     CHECK_THROWS_AS(Store(file, Store::Access::Write), InputError);
     CHECK_THROWS_AS(Store(folder.path / "no" / "campaign.db", Store::Access::Write), RunError);
-    CHECK_THROWS_AS(write_whole("/dev/full/x", "text"), RunError);
+    CHECK_THROWS_AS(jobs::write_whole("/dev/full/x", "text"), RunError);
 }

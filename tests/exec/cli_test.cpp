@@ -156,13 +156,12 @@ TEST_CASE("exec refuses what it cannot use with one line and status 2") {
         {"--board pic " + image + " --uart2 script:" + master, "line 1: 'w' is not hexadecimal bytes"},
         {"--board pic " + image + " --uart1 - --uart2 -", "already at uart1"},
         {"--board pic " + image + " --i2c script:" + bad, "line 1: too short"},
-        {"--board pic " + image + " --i2c script:" + master, "master of its bus"},
         {"--board pic " + image + " --i2c " + master, "script:FILE"},
         {"--board pic " + image + " --stimulus " + stimulus, "did you mean proximity0?"},
         {"--board pic " + image + " --stop-at main", "no symbols"},
         {"--board pic " + image + " --stop-at 0x101", "not a program address"},
         {"--board pic " + image + " --fosc 1", "robot, image or 0xWORD"},
-        {"--board pic " + image + " --log " + image, "cannot be created"},
+        {"--board pic " + image + " --log " + image, "cannot be made"},
     };
     for (const auto& [arguments, expected] : cases) {
         INFO(arguments);

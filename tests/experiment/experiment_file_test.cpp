@@ -65,7 +65,7 @@ TEST_CASE("an experiment's runs are programs by conditions by seeds, in that ord
     CHECK(run_from_json(to_json(runs[3])).seed == 7);
 }
 
-TEST_CASE("without programs and conditions there is one of each; a number of seeds counts from 1") {
+TEST_CASE("without programs and conditions there is one of each, and a number of seeds counts from 1") {
     const TemporaryFile file(kHead + "seeds = 3\n");
     const Experiment experiment = read_experiment(file.path());
     CHECK(experiment.seeds == std::vector<std::uint64_t>{1, 2, 3});

@@ -34,14 +34,14 @@ void step(Scorer& scorer, const std::vector<Place>& robots) {
 
 TEST_CASE("aggregation counts robots in the spot each step, or their share at the end") {
     Mission mission;
-    mission.spots = {disc(0, 0.6, 0.3)};
+    mission.spots = {disc(0, 0.5, 0.25)};
     Scorer sum(mission);
     mission.at_end = true;
     Scorer share(mission);
     CHECK(sum.score() == 0.0);
     for (Scorer* scorer : {&sum, &share}) {
-        step(*scorer, {{0, 0.6}, {0, 0.31}, {0, 0.29}});
-        step(*scorer, {{0, 0}, {0, 0.9}, {1, 1}});
+        step(*scorer, {{0, 0.5}, {0, 0.26}, {0, 0.24}});
+        step(*scorer, {{0, 0}, {0, 0.75}, {1, 1}});
     }
     CHECK(sum.score() == 3.0);  // the edge counts
     CHECK(share.score() == Approx(1.0 / 3));

@@ -29,14 +29,14 @@ cosim::Outcome conduct(tools::RunRequest request, const std::filesystem::path& o
     return conductor.run();
 }
 
-Result result_of(const cosim::Outcome& outcome) {
+Conducted result_of(const cosim::Outcome& outcome) {
     return {outcome.reason == cosim::EndReason::Failed, outcome.text, outcome.trace_sha256};
 }
 
 }  // namespace
 
-Result conduct(const Workbench& bench, const std::filesystem::path& scenario, double seconds,
-               const std::string& name, const Way& way) {
+Conducted conduct(const Workbench& bench, const std::filesystem::path& scenario, double seconds,
+                  const std::string& name, const Way& way) {
     tools::RunRequest request;
     request.scenario = scenario;
     request.duration = seconds;
@@ -48,7 +48,7 @@ Result conduct(const Workbench& bench, const std::filesystem::path& scenario, do
     if (way.from) {
         options.save_at = {*way.from};
         options.save = [&](cosim::RunSnapshot& taken) { snapshot = taken; };
-        const Result saving = result_of(conduct(request, bench.out(name + "-saving"), options));
+        const Conducted saving = result_of(conduct(request, bench.out(name + "-saving"), options));
         options.save_at.clear();
         options.save = nullptr;
         // A program may have ended the run before.

@@ -21,15 +21,15 @@ struct Way {
     std::optional<cosim::Time> from = {};  ///< goes on from a snapshot of that instant
 };
 
-struct Result {
+struct Conducted {
     bool failed = false;  ///< the run broke off
     std::string why;
     std::string trace_sha256;
 };
 
 /// `name` is that of the results' folder. Throws InputError for a scenario that is refused.
-Result conduct(const Workbench& bench, const std::filesystem::path& scenario, double seconds,
-               const std::string& name, const Way& way);
+Conducted conduct(const Workbench& bench, const std::filesystem::path& scenario, double seconds,
+                  const std::string& name, const Way& way);
 
 /// When the scenario's faults begin.
 std::vector<cosim::Time> begins_of_faults(const std::filesystem::path& scenario);

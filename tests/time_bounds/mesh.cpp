@@ -111,8 +111,12 @@ std::string drawn_tam(Draw& draw, int number, double end) {
                     number, -60 + 40 * number);
     if (draw.one_in(2)) text += fmt::format("start = {}\n", draw.time(0, 0.5));
     text += "reset = [";
-    for (std::uint64_t i = draw.below(5); i > 0; --i)
-        text += draw.time(0.1 * end, end) + ", ";
+    std::vector<double> resets(draw.below(5));
+    for (double& at : resets)
+        at = draw.uniform(0.5 + 0.1 * end, end);  // behind its start
+    std::sort(resets.begin(), resets.end());
+    for (const double at : resets)
+        text += fmt::format("\"{:.9f} s\", ", at);
     return text +
            fmt::format("]\n[tam.xbee]\nboot = \"{:.3f} s\"\nparameters = {{ RR = {}, MT = {}, MR = {} }}\n",
                        draw.of(std::array{0.005, 0.05, 0.2}), draw.below(4), draw.below(4), draw.below(2));

@@ -59,10 +59,10 @@ void check_seed(const char* kind, std::uint64_t seed, DrawnScenario (*draw_one)(
     const auto scenario = bench.file("drawn.toml", drawn.toml + faults);
     const Way cut{.chop = 1 + draw.below(1'000'000)}, other = another_way(draw, scenario, drawn.seconds);
     INFO(kind << ", seed " << seed << ", " << shown(other) << "\n" << drawn.toml << faults);
-    const Result whole = conduct(bench, scenario, drawn.seconds, "whole", {});
+    const Conducted whole = conduct(bench, scenario, drawn.seconds, "whole", {});
     CHECK_FALSE(whole.failed);
     for (const auto& [name, way] : {std::pair("cut", cut), std::pair("other", other)}) {
-        const Result result = conduct(bench, scenario, drawn.seconds, name, way);
+        const Conducted result = conduct(bench, scenario, drawn.seconds, name, way);
         INFO(name << ": " << result.why << " / whole: " << whole.why);
         CHECK_FALSE(result.failed);
         CHECK(result.trace_sha256 == whole.trace_sha256);
