@@ -312,6 +312,8 @@ slow:   dec r18
         rig.chip.run_until(rig.chip.now() + 10 * cosim::kMicrosecond);
     };
     phase(Kind::Start, 0x44);  // another address
+    // A START within its byte would be a bus error.
+    rig.chip.run_until(rig.chip.now() + 90 * cosim::kMicrosecond);
     phase(Kind::Start, 0x42);
     phase(Kind::Write, 0x99);
     phase(Kind::Stop, 0);

@@ -63,8 +63,8 @@ void declare_experiment(Command& app, int& status) {
     command->add_option("--results", options->share.results)->group("");
     command->add_option("--task", options->share.task)->check(whole_number_between(0, kMostTasks))->group("");
     command->footer("Examples:\n"
-                    "  puckloop experiment experiments/aggregation.toml\n"
-                    "  puckloop experiment experiments/aggregation.toml --against robots.csv");
+                    "  puckloop experiment scenarios/experiments/aggregation.toml\n"
+                    "  puckloop experiment scenarios/experiments/aggregation.toml --against robots.csv");
     command->callback([options, &status] {
         options->share.tasks = options->experiment.tasks;
         status = conduct(*options);
