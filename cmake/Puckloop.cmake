@@ -34,15 +34,12 @@ add_library(puckloop_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cp
 target_link_libraries(puckloop_precompiled PRIVATE puckloop_options)
 target_precompile_headers(puckloop_precompiled PRIVATE ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
 
-include(Unity)
-
 # puckloop_library(NAME SOURCES a.cpp b.cpp [LINK libraries...])
 function(puckloop_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC puckloop_options ${ARG_LINK})
   target_precompile_headers(${name} REUSE_FROM puckloop_precompiled)
-  puckloop_unity(${name})
 endfunction()
 
 # Tests spend their time in the libraries; compiled with less effort they are built a fifth faster.
@@ -56,7 +53,6 @@ function(puckloop_test name)
   target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
   target_compile_options(${name} PRIVATE ${PUCKLOOP_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM puckloop_test_precompiled)
-  puckloop_unity(${name})
   # A test that lacks what it needs (real images, a tool) prints "skipped: reason" or "reason: skipped", and CTest counts it
   # so. The bare word is not enough: it occurs in names of tests and in results, and would hide their failures.
   set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: |: +skipped|:. +skipped")
