@@ -139,6 +139,24 @@ TEST_CASE("a fault that held in the saved run and is in none of the next ends at
     }
 }
 
+TEST_CASE("a battery's profile goes on with the step that it was saved in") {
+    const bool rab = GENERATE(false, true);
+    // From below each brown-out threshold to above it, wherever in a step the state is saved.
+    for (const Time before : {3'300'000'000, 10'700'000'000, 17'900'000'000}) {
+        INFO((rab ? "range-and-bearing board, " : "main board, ") << before << " ps");
+        cosim::FaultSpec spec = board_fault("battery").set("profile", "0 s 0.4 V, 0.04 s 4 V");
+        spec.begin = kAt - before;
+        spec.end = kAt + 4 * kBehind;
+        const std::vector<cosim::CarriedFault> faults{carried(spec)};
+        const Stretch first = inputs(rab, 0, kAt, 1), then = inputs(rab, kAt, kAt + 4 * kBehind, 2);
+        const auto whole = make_board(rab, faults);
+        run(*whole, first);
+        const auto fresh = loaded([&] { return make_board(rab, faults); }, saved(*whole));
+        const bool same = run(*fresh, then) == run(*whole, then);
+        CHECK(same);
+    }
+}
+
 TEST_CASE("a fault of the first instant behind a boot from the cache does what it does in a whole run") {
     const bool rab = GENERATE(false, true);
     const Stretch first = inputs(rab, 0, kAt, 1), then = inputs(rab, kAt, kAt + kBehind, 2);

@@ -111,7 +111,8 @@ std::string parameters_of(Draw& draw, const KindInfo& kind, double end) {
     std::string text;
     std::optional<double> delay;
     for (const ParameterInfo& parameter : kind.parameters) {
-        if (has(kLeftOut, parameter.key) || (is_board(kind.place) && parameter.key == "address")) continue;
+        const bool fits_others = has(kLeftOut, parameter.key) && !parameter.required;
+        if (fits_others || (is_board(kind.place) && parameter.key == "address")) continue;
         if (parameter.key == "position") continue;
         if (parameter.key == "phase" && !has(kAnyPhase, kind.name)) continue;
         if (!parameter.required && draw.one_in(3)) continue;

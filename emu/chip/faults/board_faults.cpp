@@ -27,6 +27,15 @@ int motor_of(const FaultSpec& spec) {
     return spec.parameters.text("motor") == "right" ? 1 : 0;
 }
 
+/// When the step of a battery's staircase began that holds `since` the fault's begin: at a whole kStep or at
+/// a point. A state may be loaded, or another fault begin, in the middle of a step.
+Time begin_of_step(const std::vector<cosim::ProfilePoint>& points, Time since) {
+    Time step = since - since % kStep;
+    for (const cosim::ProfilePoint& point : points)
+        if (point.time <= since) step = std::max(step, point.time);
+    return step;
+}
+
 }  // namespace
 
 BoardFaults::BoardFaults(std::vector<CarriedFault> faults, ChipAccess& chip, BoardAccess& board,
@@ -216,7 +225,7 @@ void BoardFaults::hold(Time now) {
             break;
         }
         case Kind::Battery:
-            supply = cosim::value_at(profiles_[i], now - fault.trigger.begin());
+            supply = cosim::value_at(profiles_[i], begin_of_step(profiles_[i], now - fault.trigger.begin()));
             show_profile(i, now);
             continue;
         case Kind::AmbientBurst: {
