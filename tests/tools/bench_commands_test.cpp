@@ -71,7 +71,7 @@ TEST_CASE("the help of puckloop bench explains every case on a line of its own")
 
 TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetooth]") {
     check_refused("bench bluetooth --exchanges 1 --out /proc/nowhere",
-                  "/proc/nowhere: --out: cannot be made: ");
+                  "/proc/nowhere: cannot be made: ");
     check_refused("upload " PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex --script /nowhere/x",
                   "/nowhere/x: --script: cannot be written: No such file");
     check_refused("bench --scenario /nowhere.toml", "/nowhere.toml: --scenario: no such file");
