@@ -25,7 +25,7 @@ std::string robot(const std::string& name, const std::string& place, const std::
 }
 
 std::string scenario() {
-    return "[run]\nduration = \"7 s\"\nseed = 3\n[arena]\nsize = [\"1.2 m\", \"90 cm\"]\n"
+    return "[run]\nduration = \"7 s\"\nseed = 3\nideal_linux_clocks = true\n[arena]\nsize = [\"1.2 m\", \"90 cm\"]\n"
            "[[tam]]\nname = \"tam0\"\nposition = [\"30 cm\", \"20 cm\"]\nheading = \"-90 deg\"\n"
            "[coordinator]\nprogram = [\"puckloop-coordinator\", \"--experiment\", \"random-task\", "
            "\"--durations\", \"1,1\", \"--dead-time\", \"1\", \"--words\", \"17,34\"]\nstart = \"0.5 "
