@@ -78,10 +78,10 @@ void Conductor::State::run_and_save() {
     for (Time at = next_save(begin); at != kNever; at = next_save(at)) {
         pause_ = at;
         loop();
-        if (end_ < at) return;
+        if (end_ < at) break;
         save(at);
     }
-    pause_ = kNever;
+    pause_ = kNever;  // nor does one that is due while nodes end hold them back
     loop();
 }
 

@@ -96,3 +96,21 @@ TEST_CASE("a run that ends before its snapshot has failed") {
     CHECK(fs::exists(bench.folder() / "a-1s.snap"));
     CHECK_FALSE(fs::exists(bench.folder() / "a-30s.snap"));
 }
+
+TEST_CASE("a snapshot that is due while programs end does not end them") {
+    const Workbench bench;
+    const fs::path scenario =
+        bench.hello("[[robot]]\nname = \"failing\"\nposition = [\"-30 cm\", \"25 cm\"]\n"
+                    "[robot.pic]\nfirmware = \"own\"\n[robot.linux]\n"
+                    "program = [\"/bin/false\"]\nstart = \"1.3 s\"\n");
+    // The other program is asked to end 10 ms later, and takes its time.
+    bench.run("whole", {scenario, "--in-process"});
+    const auto whole = bench.report("whole");
+    const double asked = whole["programs_asked_to_end_s"].get<double>(),
+                 end = whole["simulated_s"].get<double>();
+    REQUIRE(end > asked + 0.002);
+    const std::string at = std::to_string((asked + end) / 2);
+    bench.run("saving", {scenario, "--in-process", "--save-at", at, "--save", bench.folder() / "a.snap"});
+    CHECK(bench.report("saving")["simulated_s"] == whole["simulated_s"]);
+    CHECK(bench.report("saving")["trace_sha256"] == whole["trace_sha256"]);
+}
