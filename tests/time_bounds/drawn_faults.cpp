@@ -167,7 +167,8 @@ std::string drawn_fault(Draw& draw, const FaultPlace& place, double end) {
     std::string text = fmt::format("[[fault]]\n{} = \"{}\"\nkind = \"{}\"\nmay_not_fire = true\n",
                                    place.is_node ? "node" : "link", place.name, kind.name);
     const bool of_all = kind.mark == cosim::FaultKind::SwappedWires ||
-                        (kind.place == PlaceKind::Xbee && kind.name == "clash");
+                        (kind.place == PlaceKind::Xbee && kind.name == "clash") ||
+                        kind.name == "weak_emitter" || kind.name == "weak_receiver";
     if (!place.ends.empty() && !of_all && draw.one_in(3))
         text += fmt::format("from = \"{}\"\n", draw.of(place.ends));
     return text + when(draw, kind, end) + parameters_of(draw, kind, end);
