@@ -2,6 +2,7 @@
 // where it is there, the project's own else. TAM fact sheet, sections 6 and 7.
 
 #include "base/random.h"
+#include "tests/end_to_end/api_frame.h"
 #include "tests/end_to_end/same_run.h"
 #include "tests/end_to_end/workbench.h"
 
@@ -15,23 +16,6 @@ using Catch::Contains;
 using Bytes = std::vector<int>;
 
 namespace {
-
-/// A frame on the line in API mode 2, as hex.
-std::string frame(const Bytes& data) {
-    Bytes body{static_cast<int>(data.size() >> 8), static_cast<int>(data.size() & 0xFF)};
-    int sum = 0;
-    for (const int byte : data) {
-        body.push_back(byte);
-        sum += byte;
-    }
-    body.push_back(0xFF - (sum & 0xFF));
-    std::string text = "7e";
-    for (const int byte : body) {
-        const bool special = byte == 0x7E || byte == 0x7D || byte == 0x11 || byte == 0x13;
-        text += special ? fmt::format(" 7d {:02x}", byte ^ 0x20) : fmt::format(" {:02x}", byte);
-    }
-    return text;
-}
 
 /// Frames that `from` sent on `link`: their data, and when the first byte began.
 std::vector<std::pair<double, Bytes>> frames_of(const std::vector<Row>& trace, const std::string& link,
@@ -85,15 +69,16 @@ std::string set_leds(int red, int green, int blue) {
     Bytes data{0x10, 1};
     data.insert(data.end(), kFirstTam.begin(), kFirstTam.end());
     data.insert(data.end(), {0xFF, 0xFE, 0, 0, 0x0A, red, green, blue});
-    return frame(data);
+    return api_frame(data);
 }
 
 }  // namespace
 
 TEST_CASE("TAMs find the coordinator over the air, report, and obey, the same in every placement") {
     const Workbench bench;
-    const auto file = scenario(bench, "4.0 " + frame({8, 1, 'N', 'D'}) + "\n10.8 " + set_leds(0x19, 0, 0x0C) +
-                                          "\n11.2 " + frame({8, 1, 'Q', 'Q'}) + "\n");
+    const auto file =
+        scenario(bench, "4.0 " + api_frame({8, 1, 'N', 'D'}) + "\n10.8 " + set_leds(0x19, 0, 0x0C) +
+                            "\n11.2 " + api_frame({8, 1, 'Q', 'Q'}) + "\n");
     REQUIRE(bench.run("one", {file, "--in-process", "--threads", "1"}).status == 0);
     REQUIRE(bench.run("threads", {file, "--in-process", "--threads", "4"}).status == 0);
     REQUIRE(bench.run("many", {file}).status == 0);
@@ -176,7 +161,7 @@ TEST_CASE("a coordinator that sends garbage and floods: counted, nothing hangs, 
     // Then packets to nobody without a pause: each is looked for in vain for almost two seconds.
     const Bytes all{0x10, 1, 0, 0x13, 0xA2, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE, 0, 0, 0x7F, 1, 2, 3};
     for (int line = 0; line < 90; ++line)
-        script += fmt::format("{:.3f} {}\n", 8.5 + 0.01 * line, frame(all));
+        script += fmt::format("{:.3f} {}\n", 8.5 + 0.01 * line, api_frame(all));
     const auto file = scenario(bench, script);
     const Ended ended = bench.run("o", {file, "--in-process"});
     INFO(ended.err);

@@ -1,5 +1,6 @@
 // Scenarios of TAMs, their radio modules and a coordinator's.
 
+#include "tests/end_to_end/api_frame.h"
 #include "tests/time_bounds/scenarios.h"
 
 #include <fmt/format.h>
@@ -13,23 +14,6 @@ namespace puckloop::tests {
 namespace {
 
 using Bytes = std::vector<int>;
-
-/// A frame on the line in API mode 2, as hex.
-std::string on_line(const Bytes& data) {
-    Bytes body{static_cast<int>(data.size() >> 8), static_cast<int>(data.size() & 0xFF)};
-    int sum = 0;
-    for (const int byte : data) {
-        body.push_back(byte);
-        sum += byte;
-    }
-    body.push_back(0xFF - (sum & 0xFF));
-    std::string text = "7e";
-    for (const int byte : body) {
-        const bool special = byte == 0x7E || byte == 0x7D || byte == 0x11 || byte == 0x13;
-        text += special ? fmt::format(" 7d {:02x}", byte ^ 0x20) : fmt::format(" {:02x}", byte);
-    }
-    return text;
-}
 
 Bytes target(Draw& draw) {
     Bytes address{0x00, 0x13, 0xA2, 0x00, 0x40, 0x00, 0x00, 1 + static_cast<int>(draw.below(3))};
@@ -100,7 +84,7 @@ std::string drawn_requests(Draw& draw, double end) {
     std::ranges::sort(times);
     std::string text;
     for (const double time : times)
-        text += fmt::format("{:.6f} {}\n", time, on_line(request(draw)));
+        text += fmt::format("{:.6f} {}\n", time, api_frame(request(draw)));
     return text;
 }
 
@@ -113,7 +97,7 @@ std::string drawn_tam(Draw& draw, int number, double end) {
     text += "reset = [";
     std::vector<double> resets(draw.below(5));
     for (double& at : resets)
-        at = draw.uniform(0.5 + 0.1 * end, end);  // behind its start
+        at = draw.uniform(0.5 + 0.1 * end, end);  // after its start
     std::sort(resets.begin(), resets.end());
     for (const double at : resets)
         text += fmt::format("\"{:.9f} s\", ", at);

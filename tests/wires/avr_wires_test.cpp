@@ -95,15 +95,7 @@ class Slave {
 
     /// Returns the answer; none for a Stop and for a byte that is broken off.
     std::optional<I2cPhase> act(const Action& action) {
-        I2cPhase phase;
-        phase.kind = action.kind == Action::Kind::Start   ? I2cPhaseKind::Start
-                     : action.kind == Action::Kind::Write ? I2cPhaseKind::Write
-                     : action.kind == Action::Kind::Read  ? I2cPhaseKind::Read
-                                                          : I2cPhaseKind::Stop;
-        phase.byte = action.kind == Action::Kind::Read ? std::uint8_t{0} : action.byte;
-        phase.ack = action.ack;
-        phase.start = rig_.chip.now();
-        phase.clock_period = kPeriod;
+        const I2cPhase phase = phase_of(action, rig_.chip.now(), kPeriod);
         rig_.answers.clear();
         rig_.chip.twi_slave_phase(phase);
         if (action.kind == Action::Kind::Stop) {

@@ -1,5 +1,5 @@
 // The I2C slaves of both dsPICs under masters that keep to nothing: what they agree with the address byte
-// they do not do, they break off in mid-byte, go on behind a NACK, read what is to be written. Each drawn
+// they do not do, they break off in mid-byte, go on after a NACK, read what is to be written. Each drawn
 // action is compared with the wires (wire_dspic.h): the line, the acknowledge, every status bit, the byte
 // received, the interrupts. A program serves each interrupt as it draws: reads I2CRCV or not, loads I2CTRN or
 // not, clears I2COV or not, has the next byte put into I2CTRN as soon as the one before is out or not.
@@ -124,15 +124,7 @@ class Rig {
 
     /// Returns the answer; none for a Stop and for a byte that is broken off.
     std::optional<I2cPhase> act(const Action& action) {
-        I2cPhase phase;
-        phase.kind = action.kind == Action::Kind::Start   ? I2cPhaseKind::Start
-                     : action.kind == Action::Kind::Write ? I2cPhaseKind::Write
-                     : action.kind == Action::Kind::Read  ? I2cPhaseKind::Read
-                                                          : I2cPhaseKind::Stop;
-        phase.byte = action.kind == Action::Kind::Read ? std::uint8_t{0} : action.byte;
-        phase.ack = action.ack;
-        phase.start = bench_.chip.now();
-        phase.clock_period = kPeriod;
+        const I2cPhase phase = phase_of(action, bench_.chip.now(), kPeriod);
         bench_.pins.answers.clear();
         bench_.chip.i2c_slave_phase(1, phase);
         if (action.kind == Action::Kind::Stop) {
@@ -204,7 +196,7 @@ void compare(Rig<Bench>& rig, WireDspic& wires, Draw& draw, int actions, Seen& s
                     same();
                     continue;
                 }
-                // A START needs an address byte behind it.
+                // A START needs an address byte after it.
                 breaks.kind = Action::Kind::Start;
                 breaks.byte = draw.byte();
                 wires.start();

@@ -3,6 +3,7 @@
 // manuals alone; knows nothing of phases.
 
 #include "base/random.h"
+#include "cosim/core/message.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -49,9 +50,24 @@ struct Action {
     enum class Kind : std::uint8_t { Start, Write, Read, Stop } kind = Kind::Stop;
     std::uint8_t byte = 0;  ///< of Start and Write
     bool ack = false;       ///< of Read
-    int clocks = 9;         ///< fewer: a START or STOP breaks the byte off behind so many
+    int clocks = 9;         ///< fewer: a START or STOP breaks the byte off after so many
     bool broken_by_stop = false;
 };
+
+/// What a chip's pins see of it from `start` on, at a period of `period`.
+inline cosim::I2cPhase phase_of(const Action& action, cosim::Time start, cosim::Time period) {
+    using Kind = cosim::I2cPhaseKind;
+    cosim::I2cPhase phase;
+    phase.kind = action.kind == Action::Kind::Start   ? Kind::Start
+                 : action.kind == Action::Kind::Write ? Kind::Write
+                 : action.kind == Action::Kind::Read  ? Kind::Read
+                                                      : Kind::Stop;
+    phase.byte = action.kind == Action::Kind::Read ? std::uint8_t{0} : action.byte;
+    phase.ack = action.ack;
+    phase.start = start;
+    phase.clock_period = period;
+    return phase;
+}
 
 class Draw {
   public:

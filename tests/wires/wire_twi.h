@@ -64,7 +64,7 @@ class WireTwi : public WireSlave {
   private:
     enum class Mode { Idle, Address, Receive, Transmit };
 
-    /// A START or STOP now stands where none may.
+    /// A START or STOP is now where none may be.
     bool broken() const { return mode_ != Mode::Idle && count_ > 0; }
 
     void ninth(bool pulls, bool line) {
