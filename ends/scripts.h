@@ -30,8 +30,8 @@ struct I2cRawStep {
 
 /// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits written
 /// 0x20 (without 0x they are an error), of 10 bits ten:0x2a5; `-` for the register: none is written, the
-/// device goes on from where it stands. Or `<time_s> raw <steps>`: sXX a START and a byte, wXX a byte
-/// written, r and n a byte read with and without acknowledge, p a STOP; /N behind it breaks it off after N
+/// device goes on from where it is. Or `<time_s> raw <steps>`: sXX a START and a byte, wXX a byte
+/// written, r and n a byte read with and without acknowledge, p a STOP; /N after it breaks it off after N
 /// clocks.
 struct I2cScriptLine {
     int line = 0;  ///< in the file, from 1

@@ -17,7 +17,7 @@ namespace puckloop::tools {
 
 namespace {
 
-/// In s: behind it programs get their end signals.
+/// In s: after it programs get their end signals.
 double end_of(const scenarios::Scenario& scenario) {
     return scenario.duration.value_or(std::numeric_limits<double>::infinity());
 }

@@ -222,7 +222,7 @@ TEST_CASE(
     "input capture stores the count at the edge that ICES1 selects, the noise canceler takes four clocks") {
     for (const bool canceler : {false, true}) {
         const std::string select = canceler ? "0xC1" : "0x41";  // rising edge, clock / 1
-        // The STS writes in clock 2; the timer counts from the second clock behind it on.
+        // The STS writes in clock 2; the timer counts from the second clock after it on.
         Rig reader(
             "        ldi r16, " + select +
             "\n        sts TCCR1B, r16\n        .org 0x200\n"

@@ -20,7 +20,7 @@ using namespace puckloop::dspic::test;
 
 namespace {
 
-/// To the end of the program, which begins when the power-up timer is over, and well behind it.
+/// To the end of the program, which begins when the power-up timer is over, and well after it.
 void finish(Bench30& bench) {
     constexpr Cycle kLong = 100'000;
     bench.go(bench.run_to("done") + kLong);

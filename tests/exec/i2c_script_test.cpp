@@ -145,7 +145,7 @@ TEST_CASE("a ten-bit address takes two bytes, a read of it three") {
     }
 }
 
-TEST_CASE("raw steps go on behind a refusal and break off bytes") {
+TEST_CASE("raw steps go on after a refusal and break off bytes") {
     Slave slave;
     exec::I2cScriptMaster master(
         exec::parse_i2c_script("s", "0 raw s3e w01/3 s3f r w0f n p\n0.01 w 0x20 01\n"), {}, slave, nullptr);

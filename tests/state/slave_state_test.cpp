@@ -21,7 +21,7 @@ using cosim::Time;
 namespace {
 
 constexpr Time kPeriod = 10 * cosim::kMicrosecond;
-constexpr cosim::PortIndex kSlave = 4;  // behind UARTs, bus and world
+constexpr cosim::PortIndex kSlave = 4;  // after UARTs, bus and world
 
 MakeBoard slave_board(const std::string& source) {
     const image::Image image = assembled(dspic::dspic30f6014a(), source);

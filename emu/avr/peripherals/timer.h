@@ -7,7 +7,7 @@
 // Deviations
 //  1. A counter above the top of a dual-slope mode turns at once.
 //  2. An external clock edge counts in the clock in which the pin changes, not up to 3.5 clocks later.
-//  3. A count that still belongs to the clock selected before (the clock behind a write to TCCRnB) is done at
+//  3. A count that still belongs to the clock selected before (the clock after a write to TCCRnB) is done at
 //  the write: flags that it raises and pins that it switches are one clock early.
 //  4. Of timer 2 with a watch clock: compare matches go on while OCR2x or TCNT2 waits to be updated; TCNT2 is
 //  right as soon as the CPU wakes; sleeping again within one cycle of the watch clock is safe; a write to a

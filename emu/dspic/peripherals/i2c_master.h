@@ -13,7 +13,7 @@
 //     as in silicon.
 //  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge, or that no
 //     acknowledge was given, by the stop, repeated start or byte that follows. A byte without its ninth clock
-//     is not acknowledged and costs a clock less; the bits behind it are not out of step.
+//     is not acknowledged and costs a clock less; the bits after it are not out of step.
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  5. Transmitting without a start condition reaches nobody: not acknowledged.
 //  6. A start condition while another master's transfer is under way is a collision (BCL) at once, also at an

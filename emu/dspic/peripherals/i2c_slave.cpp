@@ -155,7 +155,7 @@ void I2cSlave::not_acknowledged() {
     assign(reg(kStat), kI2CxSTAT["TBF"], false);
 }
 
-/// A START or STOP right behind a byte sent: it was the last one (deviation 2).
+/// A START or STOP right after a byte sent: it was the last one (deviation 2).
 void I2cSlave::end_byte_sent() {
     if (state_.byte_sent && state_.step == Step::None) not_acknowledged();
 }

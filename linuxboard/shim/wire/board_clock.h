@@ -16,7 +16,7 @@ constexpr std::int64_t board_time(std::int64_t simulated, std::int64_t error) {
 }
 
 /// The first simulated time at which it has counted `counted`, 0 or more; INT64_MAX for INT64_MAX and for
-/// what lies behind the end of time.
+/// what comes after the end of time.
 constexpr std::int64_t simulated_time(std::int64_t counted, std::int64_t error) {
     if (counted == INT64_MAX) return counted;
     const WideTime rate = kClockUnit + error;

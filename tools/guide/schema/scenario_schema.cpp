@@ -80,7 +80,7 @@ constexpr SchemaKey kProgram[]{
     {"clock_error", "ratio", "of its clocks, such as \"20 ppm\""}};
 constexpr SchemaKey kSignal[]{{"at", "time", ""}, {"send", "text", "INT, TERM, USR1, ..."}};
 constexpr SchemaKey kLinux[]{
-    {"arguments", "texts", "more of them, behind program's or --linux's"}, {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
+    {"arguments", "texts", "more of them, after program's or --linux's"}, {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
     {"serial_devices", "texts", "names of the line to the main board; default /dev/ttyS0"},
     {"i2c_devices", "texts", "names of the robot's bus; default /dev/i2c-3"},
     {"save_frames", "integer", "every so-many-th frame is kept as a picture"}};
@@ -106,7 +106,7 @@ constexpr SchemaKey kBluetooth[]{
 constexpr SchemaKey kGroup[]{
     {"of", "text", "robot (default), box, cylinder or lamp"}, {"count", "integer", "1 to 1000 units"},
     {"first", "integer", "number of the first one; default 0"},
-    {"name", "text", "{n} stands for the number, here and in any text of a unit"}, {"names", "texts", "in place of name, first and count"}};
+    {"name", "text", "{n} is the number, here and in any text of a unit"}, {"names", "texts", "in place of name, first and count"}};
 constexpr SchemaKey kPlace[]{
     {"kind", "text", "arena (default), disc, rectangle, normal, grid, ring or list"}, {"centre", "lengths2", "of the region"},
     {"radius", "length", "of a disc or ring"}, {"size", "lengths2", "of a rectangle"}, {"deviation", "lengths2", "of a normal distribution"},
@@ -294,7 +294,7 @@ ordered_json scenario_schema() {
     allow_text(schema, R"(\$\{)");
     properties["include"] = value_schema("texts", "files whose tables are read first");
     properties["variables"] = {{"type", "object"},
-                               {"description", "what ${NAME} stands for; --set NAME=VALUE replaces it"},
+                               {"description", "the value of ${NAME}; --set NAME=VALUE replaces it"},
                                {"additionalProperties", true}};
     return schema;
 }
