@@ -67,11 +67,7 @@ void killed(const Workbench& bench, const std::filesystem::path& file, const std
         const std::vector<pid_t> workers = campaign->children();
         campaign->signal(SIGKILL);
         campaign->wait();
-        for (int tries = 0; tries < 500; ++tries) {
-            if (std::none_of(workers.begin(), workers.end(), runs)) break;
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        CHECK(std::none_of(workers.begin(), workers.end(), runs));
+        CHECK(all_end(workers));
     }
     const std::size_t kept = results_in(bench.out("killed"));
     CHECK(kept >= after);

@@ -279,8 +279,7 @@ TEST_CASE("an upload to a line whose run is killed reports that the other end is
     run.process->signal(SIGKILL);
     run.process->wait();
     check_one_line(upload.wait(), 1, {name, "the other end is gone"});
-    for (const pid_t node : nodes)
-        CHECK(!runs(node));
+    CHECK(all_end(nodes));
 }
 
 namespace {

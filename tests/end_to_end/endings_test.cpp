@@ -60,8 +60,7 @@ struct LongRun {
 
     void check_no_orphans() const {
         CHECK(!family.empty());
-        const auto gone = [this] { return std::none_of(family.begin(), family.end(), runs); };
-        CHECK(wait_for(gone, 5.0));
+        CHECK(all_end(family));
     }
 
     void check_kept(const std::string& ended_by) const {

@@ -54,6 +54,14 @@ bool runs(pid_t process) {
     return alive(stat_of(std::to_string(process)).first);
 }
 
+bool all_end(const std::vector<pid_t>& processes, double limit) {
+    for (const double begun = wall_seconds(); std::any_of(processes.begin(), processes.end(), runs);) {
+        if (wall_seconds() - begun > limit) return false;
+        std::this_thread::sleep_for(kPoll);
+    }
+    return true;
+}
+
 std::size_t Ended::error_lines() const {
     return static_cast<std::size_t>(std::count(err.begin(), err.end(), '\n'));
 }

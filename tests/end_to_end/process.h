@@ -47,6 +47,9 @@ class Process {
 std::vector<pid_t> children_of(pid_t parent);
 /// The process runs (a zombie does not).
 bool runs(pid_t process);
+/// None of them runs any more, at the latest after `limit` wall-clock seconds: what a killed run leaves ends
+/// by itself, when it sees that its conductor is gone.
+bool all_end(const std::vector<pid_t>& processes, double limit = 10.0);
 std::string text_of(const std::filesystem::path& file);
 double wall_seconds();
 
