@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <sys/prctl.h>
+
 using namespace puckloop;
 using namespace puckloop::cosim;
 using namespace puckloop::tests;
@@ -54,6 +56,30 @@ TEST_CASE("what nobody can conduct is refused by name with status 126") {
 
 TEST_CASE("a device opened by syscall() is the board's") {
     CHECK(run({"SYS_openat"}).sent == "ok");
+}
+
+TEST_CASE("a system call that a program makes by itself is the one that the C library makes") {
+#if defined(__x86_64__)
+    if (::prctl(59 /* PR_SET_SYSCALL_USER_DISPATCH */, 0, 0, 0, 0) != 0) {
+        WARN("this kernel cannot hand on system calls: skipped");
+        return;
+    }
+#endif
+    const Ran opened = run({"direct-openat"});
+    CHECK(opened.sent == "ok");
+    CHECK(opened.log == "-2 -9\n");  // ENOENT, EBADF
+    const Ran timed = run({"direct-clock"});
+    CHECK(timed.log == "10001 us, own clock page 0\n");
+    CHECK(run({"direct-clock"}, 13 * kMicrosecond).log == timed.log);
+    const Ran forked = run({"direct-fork"});
+    CHECK(forked.log == "child 1001, ended 1001, status 5\n");
+    CHECK(forked.sent == "cp");
+    CHECK(run({"direct-signals"}).log == "set 0, handled 0, then 1, 1, stack 1\n");
+    const Ran thread = run({"direct-thread"});
+    CHECK(thread.sent == "mt");
+    CHECK(thread.success);
+    const Ran refused = run({"direct-io_uring"});
+    CHECK_THAT(refused.reason, Contains("exited with status 126") && Contains("io_uring_setup"));
 }
 
 TEST_CASE("a program cannot cut the memory that it shares with the run") {

@@ -145,6 +145,15 @@ TEST_CASE("spawned processes run in simulated time, those that are nowhere do no
     check_same(family("spawns"), ran);
 }
 
+TEST_CASE("a spawned process opens, copies and closes devices as its file actions say") {
+    const Ran ran = run(family("spawn-actions"));
+    CHECK(ran.sent == "ab");
+    CHECK_THAT(ran.log, Contains("spawned 1001, status 5 at 3"));
+    CHECK_THAT(ran.log, Contains("nowhere: No such file or directory\nno file: No such file or directory\n"
+                                 "not open: Bad file descriptor\nleft: -1\n"));
+    check_same(family("spawn-actions"), ran);
+}
+
 TEST_CASE("exec keeps the port and the alarm, and closes what is to be closed") {
     const Ran ran = run(family("replace"));
     CHECK(ran.log == "pid 1000 at 20, kept 0, closed -1\nalarm at 1020\n");

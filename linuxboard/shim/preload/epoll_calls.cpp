@@ -109,14 +109,12 @@ SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* even
     return change_watch(epoll_fd, operation, fd, &wanted);
 }
 
-SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int timeout) {
-    if (!active()) return REAL(epoll_wait)(epoll_fd, events, most, timeout);
+static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline, const sigset_t* mask) {
     if (most <= 0) {
         errno = EINVAL;
         return -1;
     }
     if (!is_epoll(epoll_fd)) return -1;
-    const Time deadline = timeout < 0 ? kNever : time_after(timeout * kMillisecond);
     pollfd entries[kMostWatches + 1];
     nfds_t count = 0;
     entries[count++] = {epoll_fd, POLLIN, 0};
@@ -125,10 +123,9 @@ SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int time
         entries[count++] = {watch.fd, static_cast<short>(watch.event.events & (POLLIN | POLLOUT | POLLPRI)),
                             0};
     }
-    int left = timeout;
-    if (deadline != kNever)
-        left = static_cast<int>((board_time(deadline - now()) + kMillisecond - 1) / kMillisecond);
-    const int ready = poll(entries, count, left);
+    timespec left{};
+    if (deadline != kNever) left = to_timespec(board_time(std::max<Time>(deadline - now(), 0)));
+    const int ready = ppoll(entries, count, deadline == kNever ? nullptr : &left, mask);
     if (ready <= 0) return ready;
     epoll_event ready_devices[kMostWatches];
     const int devices = gather(epoll_fd, entries, count, ready_devices, std::min(most, kMostWatches));
@@ -141,5 +138,24 @@ SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int time
 
 SHIM_EXPORT int epoll_pwait(int epoll_fd, epoll_event* events, int most, int timeout, const sigset_t* mask) {
     if (!active()) return REAL(epoll_pwait)(epoll_fd, events, most, timeout, mask);
-    return epoll_wait(epoll_fd, events, most, timeout);
+    return wait_until(epoll_fd, events, most, timeout < 0 ? kNever : time_after(timeout * kMillisecond),
+                      mask);
+}
+
+SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int timeout) {
+    if (!active()) return REAL(epoll_wait)(epoll_fd, events, most, timeout);
+    return epoll_pwait(epoll_fd, events, most, timeout, nullptr);
+}
+
+SHIM_EXPORT int epoll_pwait2(int epoll_fd, epoll_event* events, int most, const timespec* timeout,
+                             const sigset_t* mask) {
+    if (!active()) return REAL(epoll_pwait2)(epoll_fd, events, most, timeout, mask);
+    timespec time{};
+    if (timeout != nullptr && !get_from_program(time, timeout)) return -1;
+    if (!is_valid(time)) {
+        errno = EINVAL;
+        return -1;
+    }
+    return wait_until(epoll_fd, events, most, timeout == nullptr ? kNever : time_after(from_timespec(time)),
+                      mask);
 }

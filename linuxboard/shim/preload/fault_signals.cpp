@@ -1,5 +1,6 @@
 // Signals of faults. This library's handler comes first: it ends a copy that met a bad pointer, counts faults
 // that a program's own handler goes back to again and again, and hands on the rest as the kernel would.
+// SIGSYS is one of them since system calls past the C library arrive by it (syscalls/direct_syscalls.h).
 
 #include "linuxboard/shim/preload/fault_signals.h"
 
@@ -18,9 +19,11 @@
 namespace puckloop::shim {
 
 namespace {
-constexpr int kFaults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL};
+constexpr int kFaults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS};
+constexpr int kDirectCall = 2;                ///< si_code SYS_USER_DISPATCH
 struct sigaction wanted[std::size(kFaults)];  ///< what the program has set
 bool guarding = false;
+void (*direct_call)(void* context) = nullptr;
 __thread sigjmp_buf* guard __attribute__((tls_model("initial-exec"))) = nullptr;
 
 int index_of(int number) {
@@ -60,6 +63,8 @@ void die_of(int number, const siginfo_t* info) {
 }
 
 void on_fault(int number, siginfo_t* info, void* context) {
+    if (number == SIGSYS && info->si_code == kDirectCall && direct_call != nullptr)
+        return direct_call(context);
     const int error = errno;
     const bool is_fault = info->si_code > 0;
     if (guard != nullptr && is_fault && (number == SIGSEGV || number == SIGBUS)) {
@@ -75,6 +80,7 @@ void on_fault(int number, siginfo_t* info, void* context) {
     if ((action.sa_flags & static_cast<int>(SA_RESETHAND)) != 0) wanted[index].sa_handler = SIG_DFL;
     sigset_t blocked = action.sa_mask;
     if ((action.sa_flags & SA_NODEFER) == 0) sigaddset(&blocked, number);
+    sigdelset(&blocked, SIGSYS);
     host_call(SYS_rt_sigprocmask, SIG_BLOCK, reinterpret_cast<long>(&blocked), 0, _NSIG / 8);
     errno = error;
     if ((action.sa_flags & SA_SIGINFO) != 0) {
@@ -87,7 +93,8 @@ void on_fault(int number, siginfo_t* info, void* context) {
 void take_first(int number, const struct sigaction& action) {
     struct sigaction first {};
     first.sa_sigaction = on_fault;
-    first.sa_flags = SA_SIGINFO | SA_NODEFER | SA_ONSTACK | (action.sa_flags & SA_RESTART);
+    first.sa_flags = SA_SIGINFO | SA_NODEFER | (action.sa_flags & SA_RESTART);
+    if (number != SIGSYS) first.sa_flags |= SA_ONSTACK;  // a call may need more than a program puts aside
     REAL(sigaction)(number, &first, nullptr);
 }
 
@@ -106,6 +113,10 @@ sigjmp_buf* set_fault_guard(sigjmp_buf* next) {
     return before;
 }
 
+void take_direct_calls(void (*handler)(void* context)) {
+    direct_call = handler;
+}
+
 void guard_memory() {
     for (std::size_t i = 0; i < std::size(kFaults); ++i) {
         REAL(sigaction)(kFaults[i], nullptr, &wanted[i]);
@@ -120,9 +131,10 @@ using namespace puckloop::shim;
 
 SHIM_EXPORT int sigaction(int number, const struct sigaction* action, struct sigaction* before) noexcept {
     const int index = index_of(number);
-    if (index < 0) return REAL(sigaction)(number, action, before);
     struct sigaction next {};
     if (action != nullptr && !get_from_program(next, action)) return -1;
+    sigdelset(&next.sa_mask, SIGSYS);
+    if (index < 0) return REAL(sigaction)(number, action != nullptr ? &next : nullptr, before);
     if (before != nullptr && !put_to_program(before, wanted[index])) return -1;
     if (action == nullptr) return 0;
     wanted[index] = next;
@@ -139,4 +151,22 @@ SHIM_EXPORT sighandler_t signal(int number, sighandler_t handler) noexcept {
 SHIM_EXPORT sighandler_t __sysv_signal(int number, sighandler_t handler) noexcept {
     return index_of(number) < 0 ? REAL(__sysv_signal)(number, handler)
                                 : set_handler(number, handler, static_cast<int>(SA_RESETHAND) | SA_NODEFER);
+}
+
+// SIGSYS is never blocked: a system call past the C library would end the program.
+SHIM_EXPORT int pthread_sigmask(int how, const sigset_t* set, sigset_t* before) noexcept {
+    sigset_t next;
+    if (set != nullptr && how != SIG_UNBLOCK) {
+        if (!get_from_program(next, set)) return EFAULT;
+        sigdelset(&next, SIGSYS);
+        set = &next;
+    }
+    return REAL(pthread_sigmask)(how, set, before);
+}
+
+SHIM_EXPORT int sigprocmask(int how, const sigset_t* set, sigset_t* before) noexcept {
+    const int error = pthread_sigmask(how, set, before);
+    if (error == 0) return 0;
+    errno = error;
+    return -1;
 }

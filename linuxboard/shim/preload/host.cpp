@@ -15,6 +15,10 @@ long host_call(long number, long a, long b, long c, long d, long e, long f) {
     return REAL(syscall)(number, a, b, c, d, e, f);
 }
 
+std::uintptr_t place_of_host_call() {
+    return reinterpret_cast<std::uintptr_t>(REAL(syscall));
+}
+
 std::int64_t host_nanoseconds() {
     constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
     timespec time{};

@@ -8,6 +8,8 @@ namespace puckloop::shim {
 
 /// The C library's syscall(): -1 and errno on failure.
 long host_call(long number, long a = 0, long b = 0, long c = 0, long d = 0, long e = 0, long f = 0);
+/// A place in the C library's code that makes the system calls.
+std::uintptr_t place_of_host_call();
 /// CLOCK_MONOTONIC of the host.
 std::int64_t host_nanoseconds();
 void host_futex_wait(std::atomic<std::uint32_t>* word, std::uint32_t value);

@@ -123,6 +123,16 @@ static void serial(void) {
     GIVES(stat("/dev/null", &status), 0);
     GIVES(status.st_mode & 0777, 0666);
     FAILS(unlink("/dev/ttyS0"), EPERM);
+    GIVES(flock(fd, LOCK_EX | LOCK_NB), 0);
+    GIVES(fcntl(fd, F_SETLK, &((struct flock){.l_type = F_WRLCK})), 0);
+    GIVES(ioctl(fd, TIOCEXCL), 0);
+    const int other = open("/dev/ttyS0", O_RDWR);
+    GIVES(other >= 0, 1); /* a superuser may */
+    close(other);
+    GIVES(fcntl(fd, F_SETFL, O_ASYNC), 0);
+    GIVES(write(fd, bad() - 2048, 4000), 2048); /* the tty takes pieces of so much */
+    FAILS(write(fd, bad() - 2047, 4000), EFAULT);
+    GIVES(tcdrain(fd), 0);
     /* a break takes its time, after what was written */
     clock_gettime(CLOCK_MONOTONIC, &before);
     GIVES(write(fd, "0123456789", 10), 10);
@@ -207,9 +217,71 @@ static void i2c(void) {
     GIVES(ioctl(fd, I2C_PEC, 0), 0);
     GIVES(smbus(fd, I2C_SMBUS_READ, 2, I2C_SMBUS_WORD_DATA, &data), 0);
     GIVES(data.word, 0x6e42); /* 0x6e: the CRC-8 of c0 02 42 */
+    /* the adapter reads the count of a block alone */
+    memset(&data, 0xff, sizeof data);
+    GIVES(smbus(fd, I2C_SMBUS_READ, 4, I2C_SMBUS_BLOCK_DATA, &data), 0);
+    GIVES(data.block[0], 0x14);
+    GIVES(read(fd, big, 9000), 8192);
+    GIVES(write(fd, big, 9000), 8192);
+    FAILS(rdwr(fd, I2C_M_NOSTART, 2, big, 1), EOPNOTSUPP);
+    struct i2c_msg two[] = {{0x60, 0, 8000, big}, {0x60, 0, 8000, big}};
+    FAILS(ioctl(fd, I2C_RDWR, &((struct i2c_rdwr_ioctl_data){two, 2})), EOPNOTSUPP);
     struct stat status;
     GIVES(fstat(fd, &status), 0);
     GIVES(status.st_rdev, makedev(89, 3));
+}
+
+static void video(void) {
+    static const unsigned long calls[] = {VIDIOC_QUERYCAP,
+                                          VIDIOC_ENUM_FMT,
+                                          VIDIOC_G_FMT,
+                                          VIDIOC_S_FMT,
+                                          VIDIOC_TRY_FMT,
+                                          VIDIOC_REQBUFS,
+                                          VIDIOC_QUERYBUF,
+                                          VIDIOC_QBUF,
+                                          VIDIOC_DQBUF,
+                                          VIDIOC_STREAMON,
+                                          VIDIOC_STREAMOFF,
+                                          VIDIOC_G_PARM,
+                                          VIDIOC_S_PARM,
+                                          VIDIOC_ENUMINPUT,
+                                          VIDIOC_G_INPUT,
+                                          VIDIOC_S_INPUT,
+                                          VIDIOC_QUERYCTRL,
+                                          VIDIOC_G_CTRL,
+                                          VIDIOC_S_CTRL,
+                                          VIDIOC_QUERYMENU,
+                                          VIDIOC_G_EXT_CTRLS,
+                                          VIDIOC_S_EXT_CTRLS,
+                                          VIDIOC_TRY_EXT_CTRLS,
+                                          VIDIOC_ENUM_FRAMESIZES,
+                                          VIDIOC_ENUM_FRAMEINTERVALS};
+    const int fd = open("/dev/video1", O_RDWR);
+    char byte;
+    struct stat status;
+    FAILS(write(fd, "x", 1), EINVAL);
+    FAILS(lseek(fd, 0, SEEK_SET), ESPIPE);
+    FAILS(ftruncate(fd, 0), EINVAL);
+    FAILS(ioctl(fd, TCGETS, &status), ENOTTY);
+    FAILS(ioctl(fd, _IOWR('V', 255, int), &status), ENOTTY);
+    FAILS(open("/dev/video1", O_RDWR | O_DIRECTORY), ENOTDIR);
+    for (unsigned i = 0; i < sizeof calls / sizeof calls[0]; i++) {
+        FAILS(ioctl(fd, calls[i], bad()), EFAULT);
+        FAILS(ioctl(fd, calls[i], nowhere), EFAULT);
+        FAILS(ioctl(fd, calls[i], bad() - 1), EFAULT);
+    }
+    struct v4l2_ext_controls list = {.count = 2, .controls = (void*)bad()};
+    FAILS(ioctl(fd, VIDIOC_G_EXT_CTRLS, &list), EFAULT);
+    FAILS(ioctl(fd, VIDIOC_S_EXT_CTRLS, &list), EFAULT);
+    list.controls = nowhere;
+    FAILS(ioctl(fd, VIDIOC_TRY_EXT_CTRLS, &list), EFAULT);
+    FAILS(read(fd, bad(), 100), EFAULT);
+    FAILS(read(fd, nowhere, 100), EFAULT);
+    GIVES(read(fd, &byte, 1), 1);
+    GIVES(fstat(fd, &status), 0);
+    GIVES(S_ISCHR(status.st_mode), 1);
+    GIVES(major(status.st_rdev), 81);
 }
 
 static void clocks(void) {
@@ -249,6 +321,7 @@ int main(int argc, char** argv) {
     if (strcmp(argv[1], "pty") == 0) pty();
     if (strcmp(argv[1], "serial") == 0) serial();
     if (strcmp(argv[1], "i2c") == 0) i2c();
+    if (strcmp(argv[1], "video") == 0) video();
     if (strcmp(argv[1], "clocks") == 0) {
         close(open_serial(1, 0));
         clocks();

@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
     int fd = open_serial(1, 0);
     struct timeval start, end;
     gettimeofday(&start, NULL);
-    for (int i = 0; i < atoi(argv[1]); i++) usleep((useconds_t)atoi(argv[2]));
+    for (int i = 0; i < atoi(argv[1]); i++)
+        usleep((useconds_t)atoi(argv[2]));
     gettimeofday(&end, NULL);
     printf("%ld\n", (end.tv_sec - start.tv_sec) * 1000000L + end.tv_usec - start.tv_usec);
     close(fd);

@@ -16,7 +16,7 @@ static double ms(void) {
     return (double)(t.tv_sec - 60) * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static void say(const char *call, long result) {
+static void say(const char* call, long result) {
     int error = errno;
     printf("%s %ld %s at %.1f ms\n", call, result, result < 0 ? strerrorname_np(error) : "", ms());
     fflush(stdout);
@@ -26,8 +26,8 @@ static void nap(void) {
     usleep(10000);
 }
 
-int main(int argc, char **argv) {
-    const char *what = argc > 1 ? argv[1] : "";
+int main(int argc, char** argv) {
+    const char* what = argc > 1 ? argv[1] : "";
     int count = argc > 2 ? atoi(argv[2]) : 0;
     int number = argc > 3 ? (int)strtol(argv[3], NULL, 0) : 1;
     char buffer[256];

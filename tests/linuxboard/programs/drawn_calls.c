@@ -34,8 +34,8 @@ static unsigned draw(unsigned below) {
 }
 
 static struct termios usual;
-static char* pages; /* one that can be written, one that can be read, one that is not there */
-static int fds[8], fd_count;
+static char* pages;          /* one that can be written, one that can be read, one that is not there */
+static int fds[8], fd_count; /* the last is the camera's */
 
 static void* pointer(void) {
     switch (draw(9)) {
@@ -193,7 +193,8 @@ static void one_call(void) {
         CALL(lseek(fd, (long)draw(100) - 50, (int)draw(6)), EBADF, ESPIPE, EINVAL);
         break;
     case 9:
-        CALL(pread(fd, pointer(), size(), draw(9)), EBADF, ESPIPE, EINVAL, EFAULT, EREMOTEIO, ETIMEDOUT);
+        CALL(pread(fd, pointer(), size(), draw(9)), EBADF, ESPIPE, EINVAL, EFAULT, EREMOTEIO, ETIMEDOUT,
+             EAGAIN);
         break;
     case 10:
         CALL(pwrite(fd, pointer(), draw(100), draw(9)), EBADF, ESPIPE, EINVAL, EFAULT, EREMOTEIO, ETIMEDOUT);
@@ -288,6 +289,7 @@ static void one_call(void) {
     fcntl(fds[0], F_SETFL, O_NONBLOCK);
     fcntl(fds[2], F_SETFL, O_NONBLOCK);
     fcntl(fds[3], F_SETFL, O_NONBLOCK);
+    fcntl(fds[7], F_SETFL, O_NONBLOCK);
     ioctl(fds[1], I2C_TENBIT, 0);
     ioctl(fds[1], I2C_TIMEOUT, 1L);
     ioctl(fds[0], TCXONC, TCOON);
@@ -314,7 +316,8 @@ int main(int argc, char** argv) {
     fds[4] = open("/dev/null", O_RDWR);
     fds[5] = fds[0];
     fds[6] = fds[1];
-    fd_count = 7;
+    fds[7] = open("/dev/video1", O_RDWR | O_NONBLOCK);
+    fd_count = 8;
     fcntl(fds[0], F_SETFL, O_NONBLOCK);
     ioctl(fds[1], I2C_SLAVE, 0x60);
     for (long i = 0; i < calls; i++)

@@ -4,9 +4,11 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/sched.h>
+#include <pthread.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdint.h>
+#include <sys/auxv.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
@@ -28,6 +30,62 @@ static int child(void* argument) {
     return 5;
 }
 
+/* A system call by an instruction of its own. */
+static long direct(long number, long a, long b, long c, long d) {
+#if defined(__x86_64__)
+    register long fourth __asm__("r10") = d;
+    long result;
+    __asm__ volatile("syscall"
+                     : "=a"(result)
+                     : "a"(number), "D"(a), "S"(b), "d"(c), "r"(fourth)
+                     : "rcx", "r11", "memory");
+    return result;
+#else
+    const long result = syscall(number, a, b, c, d);
+    return result < 0 ? -errno : result;
+#endif
+}
+
+static void* direct_thread(void* argument) {
+    struct timespec pause = {0, 10000000};
+    direct(SYS_nanosleep, (long)&pause, 0, 0, 0);
+    return (void*)direct(SYS_write, *(int*)argument, (long)"t", 1, 0);
+}
+
+static volatile int handled;
+static void count(int number) {
+    handled += number;
+}
+#if defined(__x86_64__)
+void own_return(void);
+__asm__(".globl own_return\nown_return: mov $15, %eax\n\tsyscall");
+#else
+#define own_return 0
+#endif
+
+/* A handler with a way back of its own, as some languages' runtimes have, while all signals are blocked. */
+static void direct_signals(void) {
+    struct {
+        void* handler;
+        unsigned long flags;
+        void* restorer;
+        uint64_t mask;
+    } action = {(void*)count, 0x04000000, (void*)own_return, ~(uint64_t)0}, before = {0, 0, 0, 0};
+    const uint64_t all = ~(uint64_t)0, none = 0;
+    const long set = direct(SYS_rt_sigaction, SIGUSR1, (long)&action, 0, 8);
+    direct(SYS_rt_sigprocmask, SIG_SETMASK, (long)&all, 0, 8);
+    direct(SYS_kill, direct(SYS_getpid, 0, 0, 0, 0), SIGUSR1, 0, 0);
+    printf("set %ld, handled %d", set, handled);
+    direct(SYS_rt_sigprocmask, SIG_SETMASK, (long)&none, 0, 8);
+    direct(SYS_rt_sigaction, SIGUSR1, 0, (long)&before, 8);
+    static char room[65536];
+    stack_t wanted = {room, 0, sizeof room}, found = {NULL, 0, 0};
+    direct(SYS_sigaltstack, (long)&wanted, 0, 0, 0);
+    direct(SYS_sigaltstack, 0, (long)&found, 0, 0);
+    printf(", then %d, %d, stack %d\n", handled == SIGUSR1, before.handler == (void*)count,
+           found.ss_sp == room);
+}
+
 /* A child that the call made writes after 10 ms, its parent after 20. */
 static int after(long made, int fd) {
     if (made < 0) {
@@ -41,6 +99,39 @@ static int after(long made, int fd) {
     const pid_t ended = waitpid(-1, &status, __WALL);
     printf("child %ld, ended %d, status %d\n", made, ended, WEXITSTATUS(status));
     return 0;
+}
+
+static int direct_calls(const char* how, int fd) {
+    struct timespec from = {0, 0}, to = {0, 0}, pause = {0, 10000000};
+    if (strcmp(how, "direct-openat") == 0) {
+        const long other = direct(SYS_openat, AT_FDCWD, (long)"/dev/ttyS0", O_RDWR, 0);
+        printf("%ld %ld\n", direct(SYS_openat, AT_FDCWD, (long)"/nowhere", O_RDONLY, 0),
+               direct(SYS_write, 999, (long)"x", 1, 0));
+        return direct(SYS_write, other, (long)"ok", 2, 0) != 2;
+    }
+    if (strcmp(how, "direct-clock") == 0) {
+        direct(SYS_clock_gettime, CLOCK_MONOTONIC, (long)&from, 0, 0);
+        direct(SYS_nanosleep, (long)&pause, 0, 0, 0);
+        direct(SYS_clock_gettime, CLOCK_MONOTONIC, (long)&to, 0, 0);
+        const long passed = (to.tv_sec - from.tv_sec) * 1000000000 + to.tv_nsec - from.tv_nsec;
+        printf("%ld us, own clock page %ld\n", passed / 1000, (long)getauxval(AT_SYSINFO_EHDR));
+        return 0;
+    }
+    if (strcmp(how, "direct-fork") == 0) return after(direct(SYS_clone, SIGCHLD, 0, 0, 0), fd);
+    if (strcmp(how, "direct-io_uring") == 0) return (int)direct(SYS_io_uring_setup, 4, (long)&from, 0, 0);
+    if (strcmp(how, "direct-signals") == 0) {
+        direct_signals();
+        return 0;
+    }
+    if (strcmp(how, "direct-thread") == 0) {
+        pthread_t thread;
+        void* written = NULL;
+        pthread_create(&thread, NULL, direct_thread, &fd);
+        direct(SYS_write, fd, (long)"m", 1, 0);
+        pthread_join(thread, &written);
+        return written != (void*)1;
+    }
+    return 4;
 }
 
 /* The file that the library and the run share, as a program may find it. */
@@ -95,6 +186,7 @@ int main(int argc, char** argv) {
     const char* how = argc > 1 ? argv[1] : "";
     int fd = open_serial(1, 0);
     static char stack[65536];
+    if (strncmp(how, "direct-", 7) == 0) return direct_calls(how, fd);
     if (strcmp(how, "SYS_fork") == 0) return after(syscall(SYS_fork), fd);
     if (strcmp(how, "SYS_clone") == 0) return after(syscall(SYS_clone, SIGCHLD, 0, 0, 0, 0), fd);
     if (strcmp(how, "SYS_clone3") == 0) {

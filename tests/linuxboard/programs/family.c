@@ -148,6 +148,33 @@ static void spawns(void) {
     printf("vfork %d\n", WEXITSTATUS(status));
 }
 
+/* What a new process is to do first with its descriptors, devices among them. */
+static void spawn_actions(int fd) {
+    char* words[] = {(char*)"sh", (char*)"-c", (char*)"printf a; printf b >&7; sleep 0.03; exit 5", NULL};
+    posix_spawn_file_actions_t actions;
+    pid_t child = 0;
+    int status = 0;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, "/dev/ttyS0", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fd, 7);
+    posix_spawn_file_actions_addclose(&actions, fd);
+    posix_spawn_file_actions_addclosefrom_np(&actions, 8);
+    posix_spawn_file_actions_addchdir_np(&actions, "/");
+    check(posix_spawnp(&child, "sh", &actions, NULL, words, environ) == 0, "posix_spawnp");
+    check(waitpid(child, &status, 0) == child, "waitpid");
+    printf("spawned %d, status %d at %ld\n", (int)child, WEXITSTATUS(status), ms());
+    printf("nowhere: %s\n", strerror(posix_spawn(&child, "/nowhere", &actions, NULL, words, environ)));
+    posix_spawn_file_actions_addopen(&actions, 9, "/nowhere/file", O_RDONLY, 0);
+    printf("no file: %s\n", strerror(posix_spawnp(&child, "sh", &actions, NULL, words, environ)));
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addclose(&actions, 99);
+    posix_spawn_file_actions_adddup2(&actions, 98, 1);
+    printf("not open: %s\n", strerror(posix_spawnp(&child, "sh", &actions, NULL, words, environ)));
+    posix_spawn_file_actions_destroy(&actions);
+    printf("left: %d\n", (int)waitpid(-1, &status, 0));
+}
+
 /* A descriptor of the port and an alarm go through exec; one with FD_CLOEXEC does not. */
 static void replace(void) {
     int fd = open_serial(1, 0);
@@ -192,6 +219,7 @@ int main(int argc, char** argv) {
     if (strcmp(what, "signals") == 0) signals();
     if (strcmp(what, "shells") == 0) shells();
     if (strcmp(what, "spawns") == 0) spawns();
+    if (strcmp(what, "spawn-actions") == 0) spawn_actions(fd);
     close(fd);
     return 0;
 }

@@ -1,5 +1,5 @@
-/* Calls on the serial port and the clock in an order drawn from a seed; every result and its time are printed.
-   jumble SEED CALLS alone|threads|family [i2c] */
+/* Calls on the serial port and the clock in an order drawn from a seed; every result and its time are
+   printed. jumble SEED CALLS alone|threads|family [i2c] */
 #define _GNU_SOURCE
 #include "serial.h"
 #include <errno.h>
@@ -39,7 +39,8 @@ static void show(struct player* me, const char* what, long result, const char* b
     clock_gettime(CLOCK_MONOTONIC, &t);
     printf("%s %ld.%09ld %s %ld", me->name, (long)t.tv_sec, t.tv_nsec, what, result);
     if (result < 0) printf(" %s", strerror(error));
-    for (long i = 0; bytes != NULL && i < result; i++) printf(" %02x", (unsigned char)bytes[i]);
+    for (long i = 0; bytes != NULL && i < result; i++)
+        printf(" %02x", (unsigned char)bytes[i]);
     printf(" alarms %d\n", (int)alarms);
 }
 
@@ -62,21 +63,41 @@ static void one_call(struct player* me) {
     int number = 0;
     struct pollfd both[2] = {{waits, POLLIN, 0}, {looks, draw(me, 2) ? POLLOUT : POLLIN, 0}};
     switch (draw(me, 24)) {
-    case 0: case 1: case 2: return show(me, "read", read(looks, bytes, few), bytes);
-    case 3: case 4:
+    case 0:
+    case 1:
+    case 2:
+        return show(me, "read", read(looks, bytes, few), bytes);
+    case 3:
+    case 4:
         /* a wait that ends: 3 ms, then only what is there */
         number = poll(both, 1, 3);
         show(me, "poll", number, NULL);
         if (number == 1 && draw(me, 4) != 0) show(me, "read", read(looks, bytes, few), bytes);
         return;
-    case 5: case 6: return show(me, "look", poll(both, 1 + draw(me, 2), 0), NULL);
-    case 7: case 8: case 9: return show(me, "usleep", usleep(draw(me, 300)), NULL);
-    case 10: case 11: case 12: return show(me, "write", write(draw(me, 2) ? waits : looks, bytes, few), NULL);
-    case 13: ioctl(waits, FIONREAD, &number); return show(me, "queue", number, NULL);
-    case 14: ioctl(waits, TIOCOUTQ, &number); return show(me, "unsent", number, NULL);
-    case 15: return draw(me, 4) ? (void)0 : show(me, "drain", tcdrain(waits), NULL);
-    case 16: return draw(me, 6) ? (void)0 : show(me, "flush", tcflush(waits, TCIFLUSH), NULL);
-    case 17: ualarm(1 + draw(me, 900), 0); return;
+    case 5:
+    case 6:
+        return show(me, "look", poll(both, 1 + draw(me, 2), 0), NULL);
+    case 7:
+    case 8:
+    case 9:
+        return show(me, "usleep", usleep(draw(me, 300)), NULL);
+    case 10:
+    case 11:
+    case 12:
+        return show(me, "write", write(draw(me, 2) ? waits : looks, bytes, few), NULL);
+    case 13:
+        ioctl(waits, FIONREAD, &number);
+        return show(me, "queue", number, NULL);
+    case 14:
+        ioctl(waits, TIOCOUTQ, &number);
+        return show(me, "unsent", number, NULL);
+    case 15:
+        return draw(me, 4) ? (void)0 : show(me, "drain", tcdrain(waits), NULL);
+    case 16:
+        return draw(me, 6) ? (void)0 : show(me, "flush", tcflush(waits, TCIFLUSH), NULL);
+    case 17:
+        ualarm(1 + draw(me, 900), 0);
+        return;
     case 18: {
         fd_set set;
         FD_ZERO(&set);
@@ -84,21 +105,27 @@ static void one_call(struct player* me) {
         struct timeval time = {0, draw(me, 500)};
         return show(me, "select", select(waits + 1, &set, NULL, NULL, &time), NULL);
     }
-    case 19: return draw(me, 8) ? (void)0 : show(me, "long write", write(waits, bytes, sizeof bytes), NULL);
-    case 20: if (me->changes_settings && draw(me, 3) == 0) set_up(me); return;
-    case 21: return draw(me, 3) ? (void)0 : show(me, "yield", sched_yield(), NULL);
+    case 19:
+        return draw(me, 8) ? (void)0 : show(me, "long write", write(waits, bytes, sizeof bytes), NULL);
+    case 20:
+        if (me->changes_settings && draw(me, 3) == 0) set_up(me);
+        return;
+    case 21:
+        return draw(me, 3) ? (void)0 : show(me, "yield", sched_yield(), NULL);
     case 22:
         if (bus < 0) return;
         ioctl(bus, I2C_SLAVE, 0x60);
         bytes[0] = (char)draw(me, 6);
         if (write(bus, bytes, 1) == 1) show(me, "register", read(bus, bytes, 1), bytes);
         return;
-    default: return show(me, "clock", 0, NULL);
+    default:
+        return show(me, "clock", 0, NULL);
     }
 }
 
 static void* play(void* argument) {
-    for (int i = 0; i < calls; i++) one_call(argument);
+    for (int i = 0; i < calls; i++)
+        one_call(argument);
     return NULL;
 }
 

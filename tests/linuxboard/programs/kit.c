@@ -36,7 +36,8 @@ static void timers(int serial) {
     signal(SIGALRM, on_alarm);
     struct itimerval every = {{0, 7000}, {0, 7000}};
     setitimer(ITIMER_REAL, &every, NULL);
-    for (int i = 0; i < 3; i++) pause();
+    for (int i = 0; i < 3; i++)
+        pause();
     printf("alarms %d at %ld\n", (int)alarms, ms());
     memset(&every, 0, sizeof every);
     setitimer(ITIMER_REAL, &every, NULL);
@@ -114,8 +115,10 @@ static void* meets(void* argument) {
 static void locks(void) {
     pthread_t threads[3];
     pthread_barrier_init(&barrier, NULL, 3);
-    for (long i = 0; i < 3; i++) pthread_create(&threads[i], NULL, meets, (void*)i);
-    for (int i = 0; i < 3; i++) pthread_join(threads[i], NULL);
+    for (long i = 0; i < 3; i++)
+        pthread_create(&threads[i], NULL, meets, (void*)i);
+    for (int i = 0; i < 3; i++)
+        pthread_join(threads[i], NULL);
     printf("joined at %ld\n", ms());
     pthread_mutex_t mutex;
     pthread_mutexattr_t attributes;
@@ -151,7 +154,8 @@ static void children(void) {
     }
     int status = 0;
     waitpid(child, &status, 0);
-    printf("child %d, system %d, pid %d\n", WEXITSTATUS(status), WEXITSTATUS(system("exit 3")), (int)getpid());
+    printf("child %d, system %d, pid %d\n", WEXITSTATUS(status), WEXITSTATUS(system("exit 3")),
+           (int)getpid());
 }
 
 static void modem(int serial) {
@@ -169,7 +173,8 @@ static void modem(int serial) {
     long written = ms() - start;
     ioctl(serial, TIOCOUTQ, &lines);
     tcdrain(serial);
-    printf("flushed %d, write took %ld, queue %d, drained after %ld\n", waiting, written, lines, ms() - start);
+    printf("flushed %d, write took %ld, queue %d, drained after %ld\n", waiting, written, lines,
+           ms() - start);
 }
 
 int main(int argc, char** argv) {

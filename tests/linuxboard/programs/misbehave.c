@@ -30,7 +30,8 @@ int main(int argc, char** argv) {
         char b;
         fcntl(fd, F_SETFL, O_NONBLOCK);
         long polls = 0;
-        while (read(fd, &b, 1) != 1) polls++;
+        while (read(fd, &b, 1) != 1)
+            polls++;
         printf("%ld polls, then %c\n", polls, b);
         return 0;
     }

@@ -18,7 +18,8 @@ static void* player(void* argument) {
     int me = *(int*)argument;
     for (int i = 0; i < 20; i++) {
         pthread_mutex_lock(&lock);
-        while (turn != me) pthread_cond_wait(&changed, &lock);
+        while (turn != me)
+            pthread_cond_wait(&changed, &lock);
         usleep(500 + 100 * (unsigned)me);
         say((char)('a' + me));
         turn = 1 - me;
@@ -45,7 +46,8 @@ static void cleanup(void* argument) {
 
 static void* sleeper(void* argument) {
     pthread_cleanup_push(cleanup, NULL);
-    while (1) usleep(1000000);
+    while (1)
+        usleep(1000000);
     pthread_cleanup_pop(0);
     return argument;
 }
@@ -56,12 +58,14 @@ int main(void) {
     int numbers[2] = {0, 1};
     pthread_t players[2], detached, cancelled;
     pthread_create(&cancelled, NULL, sleeper, NULL);
-    for (int i = 0; i < 2; i++) pthread_create(&players[i], NULL, player, &numbers[i]);
+    for (int i = 0; i < 2; i++)
+        pthread_create(&players[i], NULL, player, &numbers[i]);
     pthread_create(&detached, NULL, ticker, NULL);
     pthread_detach(detached);
     sem_wait(&done);
     sem_wait(&done);
-    for (int i = 0; i < 2; i++) pthread_join(players[i], NULL);
+    for (int i = 0; i < 2; i++)
+        pthread_join(players[i], NULL);
     pthread_cancel(cancelled);
     void* result = NULL;
     pthread_join(cancelled, &result);

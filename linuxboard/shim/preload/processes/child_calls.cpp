@@ -4,6 +4,7 @@
 // of a device's descriptor (O_NONBLOCK, the I2C address) are each process's own after fork().
 
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/direct_syscalls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
@@ -12,8 +13,6 @@
 #include "linuxboard/shim/preload/time/timers.h"
 
 #include <fcntl.h>
-#include <limits.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/syscall.h>
@@ -41,25 +40,8 @@ void begin_child(const Birth& birth) {
     change_link(birth.link, birth.slot);
     drop_all_timers();
     only_this_thread();
+    conduct_direct_syscalls();
     say_hello(true);
-}
-
-struct Spawn {
-    const char* file;
-    const posix_spawn_file_actions_t* actions;
-    const posix_spawnattr_t* attributes;
-    char* const* arguments;
-    char* const* environment;
-    int link;
-};
-
-int spawn_there(void* context) {
-    const Spawn& spawn = *static_cast<const Spawn*>(context);
-    place_link(spawn.link);
-    go_passive();  // the C library's own dup2() for the new process is the host's
-    pid_t ignored = 0;
-    return REAL(posix_spawn)(&ignored, spawn.file, spawn.actions, spawn.attributes, spawn.arguments,
-                             spawn.environment);
 }
 
 int run_shell(const char* command) {
@@ -119,32 +101,6 @@ SHIM_EXPORT int daemon(int stay, int keep_output) noexcept {
         if (nothing > STDERR_FILENO) close(nothing);
     }
     return 0;
-}
-
-SHIM_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
-                            const posix_spawnattr_t* attributes, char* const* arguments,
-                            char* const* environment) {
-    if (!active()) return REAL(posix_spawn)(pid, path, actions, attributes, arguments, environment);
-    mark_call("posix_spawn");
-    if (!can_be_conducted(path, true)) return EACCES;
-    Birth birth;
-    if (!ask_for_process(birth, leave(false))) return errno;
-    char** linked = linked_environment(environment, birth.slot);
-    Spawn spawn{path, actions, attributes, arguments, linked, birth.link};
-    const int error = in_between(spawn_there, &spawn, false);
-    free(linked);
-    const pid_t child = report_birth(birth, error == 0);
-    if (error != 0) return error < 0 ? EAGAIN : error;
-    if (pid != nullptr) *pid = child;
-    return 0;
-}
-
-SHIM_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file_actions_t* actions,
-                             const posix_spawnattr_t* attributes, char* const* arguments,
-                             char* const* environment) {
-    if (!active()) return REAL(posix_spawnp)(pid, file, actions, attributes, arguments, environment);
-    char room[PATH_MAX];
-    return posix_spawn(pid, search_path(file, room), actions, attributes, arguments, environment);
 }
 
 SHIM_EXPORT int system(const char* command) {

@@ -1,6 +1,7 @@
 // The process as a whole: begin, end, random numbers.
 
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/direct_syscalls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
@@ -45,6 +46,8 @@ void begin_process(Thread* main_thread) {
     pthread_atfork(nullptr, nullptr, left_by_unknown_fork);
     // What a program has said is in the log even if it is killed.
     if (std::getenv("_STDBUF_O") == nullptr) std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+    prepare_direct_syscalls();
+    conduct_direct_syscalls();
     take_over(say_hello(false));
 }
 

@@ -1,6 +1,7 @@
 // Threads: created, joined, detached, cancelled, ended.
 
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/direct_syscalls.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
@@ -30,6 +31,7 @@ void thread_leaves(void* argument) {
 void* run_thread(void* argument) {
     auto* thread = static_cast<Thread*>(argument);
     pthread_setspecific(exit_key, thread);
+    conduct_direct_syscalls();
     enter_thread(thread);
     return thread->start(thread->argument);
 }

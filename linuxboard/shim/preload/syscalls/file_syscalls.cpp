@@ -1,0 +1,109 @@
+// System calls on descriptors: devices, pipes, waiting.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/syscalls/syscalls.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/select.h>
+#include <sys/sendfile.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/timerfd.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+namespace puckloop::shim {
+
+namespace {
+/// The kernel's set of signals, whose 8 bytes the C library's begins with, as the library's; nullptr stays.
+class Mask {
+  public:
+    explicit Mask(const void* kernels) {
+        sigemptyset(&set_);
+        given_ = kernels != nullptr && copy_from_program(&set_, kernels, 8);
+    }
+    operator const sigset_t*() const { return given_ ? &set_ : nullptr; }
+
+  private:
+    sigset_t set_;
+    bool given_ = false;
+};
+
+Mask mask_of(const Argument& kernels) {
+    return Mask(kernels);
+}
+
+long pselect6(const Argument (&a)[6]) {
+    const void* mask[2] = {nullptr, nullptr};  // and its size
+    if (a[5].value != 0 && !copy_from_program(mask, a[5], sizeof mask)) return -1;
+    return pselect(a[0], a[1], a[2], a[3], a[4], Mask(mask[0]));
+}
+}  // namespace
+
+bool file_syscall(long number, const Argument (&a)[6], long* result) {
+    switch (number) {
+#if defined(__x86_64__)
+        PUCKLOOP_SYSCALL(dup2, dup2(a[0], a[1]));
+        PUCKLOOP_SYSCALL(pipe, pipe(a[0]));
+        PUCKLOOP_SYSCALL(poll, poll(static_cast<pollfd*>(a[0]), a[1], a[2]));
+        PUCKLOOP_SYSCALL(select, select(a[0], a[1], a[2], a[3], a[4]));
+        PUCKLOOP_SYSCALL(epoll_create, epoll_create(a[0]));
+        PUCKLOOP_SYSCALL(epoll_wait, epoll_wait(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(eventfd, eventfd(a[0], 0));
+#endif
+        PUCKLOOP_SYSCALL(close, close(a[0]));
+        PUCKLOOP_SYSCALL(close_range, close_range(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(dup, dup(a[0]));
+        PUCKLOOP_SYSCALL(dup3, dup3(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(pipe2, pipe2(a[0], a[1]));
+        PUCKLOOP_SYSCALL(socketpair, socketpair(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(fcntl, fcntl(a[0], a[1], a[2].value));
+        PUCKLOOP_SYSCALL(flock, flock(a[0], a[1]));
+        PUCKLOOP_SYSCALL(ioctl, ioctl(a[0], static_cast<unsigned long>(a[1]), a[2].value));
+        PUCKLOOP_SYSCALL(read, read(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(write, write(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(readv, readv(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(writev, writev(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(pread64, pread(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(pwrite64, pwrite(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(preadv, preadv(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(pwritev, pwritev(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(preadv2, preadv2(a[0], a[1], a[2], a[3], a[5]));
+        PUCKLOOP_SYSCALL(pwritev2, pwritev2(a[0], a[1], a[2], a[3], a[5]));
+        PUCKLOOP_SYSCALL(lseek, lseek(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(sendfile, sendfile(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(splice, splice(a[0], a[1], a[2], a[3], a[4], a[5]));
+        PUCKLOOP_SYSCALL(copy_file_range, copy_file_range(a[0], a[1], a[2], a[3], a[4], a[5]));
+        PUCKLOOP_SYSCALL(fstat, fstat(a[0], a[1]));
+        PUCKLOOP_SYSCALL(fchmod, fchmod(a[0], a[1]));
+        PUCKLOOP_SYSCALL(fchown, fchown(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(mmap, reinterpret_cast<long>(mmap(a[0], a[1], a[2], a[3], a[4], a[5])));
+        PUCKLOOP_SYSCALL(ppoll, ppoll(a[0], a[1], a[2], mask_of(a[3])));
+        PUCKLOOP_SYSCALL(pselect6, pselect6(a));
+        PUCKLOOP_SYSCALL(epoll_create1, epoll_create1(a[0]));
+        PUCKLOOP_SYSCALL(epoll_ctl, epoll_ctl(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(epoll_pwait, epoll_pwait(a[0], a[1], a[2], a[3], mask_of(a[4])));
+        PUCKLOOP_SYSCALL(epoll_pwait2, epoll_pwait2(a[0], a[1], a[2], a[3], mask_of(a[4])));
+        PUCKLOOP_SYSCALL(eventfd2, eventfd(a[0], a[1]));
+        PUCKLOOP_SYSCALL(timerfd_create, timerfd_create(a[0], a[1]));
+        PUCKLOOP_SYSCALL(timerfd_settime, timerfd_settime(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(timerfd_gettime, timerfd_gettime(a[0], a[1]));
+        PUCKLOOP_SYSCALL(accept4, accept4(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(accept, accept(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(recvfrom, recvfrom(a[0], a[1], a[2], a[3], a[4], a[5]));
+        PUCKLOOP_SYSCALL(recvmsg, recvmsg(a[0], a[1], a[2]));
+    default:
+        return false;
+    }
+}
+
+}  // namespace puckloop::shim

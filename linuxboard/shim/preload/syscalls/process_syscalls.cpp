@@ -1,0 +1,98 @@
+// System calls for processes: made, replaced, ended, named. What nobody can conduct is refused by name.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/processes/make_process.h"
+#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/syscalls/syscalls.h"
+
+#include <linux/sched.h>
+#include <sched.h>
+#include <sys/random.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/utsname.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace puckloop::shim {
+
+namespace {
+long clone3(const void* argument, std::size_t size) {
+    clone_args wanted{};
+    if (size < CLONE_ARGS_SIZE_VER0) return failed(EINVAL);
+    if (!copy_from_program(&wanted, argument, std::min(size, sizeof wanted))) return -1;
+    const auto pointer = [](std::uint64_t number) { return reinterpret_cast<void*>(number); };
+    return clone_process("syscall(SYS_clone3)", wanted.flags, static_cast<int>(wanted.exit_signal),
+                         pointer(wanted.stack), pointer(wanted.parent_tid), pointer(wanted.child_tid));
+}
+}  // namespace
+
+bool process_syscall(long number, const Argument (&a)[6], long* result) {
+    switch (number) {
+#if defined(__x86_64__)
+        PUCKLOOP_SYSCALL(getpgrp, getpgrp());
+        PUCKLOOP_SYSCALL(getrlimit, getrlimit(static_cast<__rlimit_resource_t>(a[0].value), a[1]));
+        PUCKLOOP_SYSCALL(setrlimit, setrlimit(static_cast<__rlimit_resource_t>(a[0].value), a[1]));
+#endif
+        PUCKLOOP_SYSCALL(getrandom, getrandom(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(getpid, getpid());
+        PUCKLOOP_SYSCALL(getppid, getppid());
+        PUCKLOOP_SYSCALL(gettid, gettid());
+        PUCKLOOP_SYSCALL(getpgid, getpgid(a[0]));
+        PUCKLOOP_SYSCALL(setpgid, setpgid(a[0], a[1]));
+        PUCKLOOP_SYSCALL(getsid, getsid(a[0]));
+        PUCKLOOP_SYSCALL(setsid, setsid());
+        PUCKLOOP_SYSCALL(uname, uname(a[0]));
+        PUCKLOOP_SYSCALL(prlimit64, prlimit64(a[0], static_cast<__rlimit_resource>(a[1].value), a[2], a[3]));
+        PUCKLOOP_SYSCALL(setpriority, setpriority(static_cast<__priority_which_t>(a[0].value), a[1], a[2]));
+        PUCKLOOP_SYSCALL(sched_setscheduler, sched_setscheduler(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(sched_setaffinity, sched_setaffinity(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(wait4, wait4(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(waitid, waitid(static_cast<idtype_t>(a[0].value), a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(execve, execve(a[0], a[1], a[2]));
+#if defined(__x86_64__)
+    case SYS_fork:
+    case SYS_vfork:
+        *result = fork_plainly();
+        return true;
+    case SYS_clone:  // the order of the last arguments is this processor's
+        *result = clone_process("syscall(SYS_clone)",
+                                static_cast<std::uint64_t>(a[0].value) & ~std::uint64_t{CSIGNAL},
+                                static_cast<int>(a[0].value & CSIGNAL), a[1], a[2], a[3]);
+        return true;
+#else
+    case SYS_clone:
+        *result = clone_process("syscall(SYS_clone)",
+                                static_cast<std::uint64_t>(a[0].value) & ~std::uint64_t{CSIGNAL},
+                                static_cast<int>(a[0].value & CSIGNAL), a[1], a[2], a[4]);
+        return true;
+#endif
+    case SYS_clone3:
+        *result = clone3(a[0], a[1]);
+        return true;
+    case SYS_execveat:
+        refuse_call("syscall(SYS_execveat)", "which puts another program in its place past the library");
+        return true;
+    case SYS_exit_group:
+        _exit(a[0]);
+    case SYS_exit:
+        if (thread_count() == 1) _exit(a[0]);
+        return false;
+    case SYS_ptrace:
+        refuse_call("syscall(SYS_ptrace)", "with which debuggers stop processes outside of simulated time");
+        return true;
+    case SYS_io_uring_setup:
+    case SYS_io_uring_enter:
+    case SYS_io_uring_register:
+        refuse_call("syscall(SYS_io_uring_setup)", "whose input and output pass by every call");
+        return true;
+    default:
+        return false;
+    }
+}
+
+}  // namespace puckloop::shim
