@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <new>
@@ -95,10 +97,18 @@ std::string cut(std::string_view text, std::size_t most, bool lines) {
                        with_commas(tail - head), shown(text.substr(tail), lines));
 }
 
+/// Memory that processes share is a file to the kernel.
+bool file_sizes_are_limited() {
+    rlimit limit{};
+    return ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
 }  // namespace
 
 std::string reason_of(const std::exception& error) {
-    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "not enough memory";
+    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+        return file_sizes_are_limited() ? "not enough memory, or files are limited to less (ulimit -f)"
+                                        : "not enough memory";
     if (dynamic_cast<const std::length_error*>(&error) != nullptr ||
         dynamic_cast<const std::out_of_range*>(&error) != nullptr)
         return "a size or an index is out of range, as of a damaged file";

@@ -2,6 +2,7 @@
 
 #include "run/factory/node_process.h"
 #include "run/plan/linux_arguments.h"
+#include "tools/cli/file_size_limit.h"
 #include "tools/cli/program.h"
 #include "tools/commands.h"
 #include "tools/guide/guide.h"
@@ -41,6 +42,7 @@ std::vector<DeclareCommand> all_commands() {
 
 int main(int argc, char** argv) {
     using namespace puckloop::tools;
+    survive_file_size_limit();
     if (const auto status = serve_as_node(argc, argv)) return *status;
     if (argc > 1 && std::string_view(argv[1]) == "gap") return become_gap(argv);
     if (argc > 2 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "gap") {

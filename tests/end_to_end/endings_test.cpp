@@ -170,6 +170,31 @@ TEST_CASE("a full disk ends the run with what fits, and a report") {
     CHECK(::umount(disk.c_str()) == 0);
 }
 
+TEST_CASE("a limit of file sizes ends the run with what fits and the file's name, not by a signal") {
+    const Workbench bench;
+    const auto limited = [&bench](const char* blocks, const Words& more) {
+        Words words{"sh",
+                    "-c",
+                    std::string("ulimit -f ") + blocks + " && exec \"$0\" \"$@\"",
+                    PUCKLOOP_PROGRAM,
+                    "run",
+                    kHello,
+                    "--duration",
+                    "200",
+                    "--record",
+                    "--out",
+                    bench.out("o")};
+        words.insert(words.end(), more.begin(), more.end());
+        return Process(words, bench.folder()).wait();
+    };
+    for (const Words& placement : {Words{}, Words{"--in-process"}}) {
+        check_one_line(limited("8000", placement), 1, {"o/record.csv", "File too large"},
+                       60);  // of 512 bytes
+        CHECK_THAT(bench.report("o")["ended_why"].get<std::string>(), Contains("File too large"));
+        check_one_line(limited("16", placement), 1, {"ulimit -f"}, 60);
+    }
+}
+
 TEST_CASE("a snapshot that finds no room is not reported") {
     const Workbench bench;
     if (!mount_small_disk(bench, "size=64k")) return;

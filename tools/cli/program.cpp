@@ -60,8 +60,9 @@ void print_error(std::string_view text) {
     if (const std::exception_ptr uncaught = std::current_exception()) {
         try {
             std::rethrow_exception(uncaught);
-        } catch (const std::bad_alloc&) {
-            text = "not enough memory";
+        } catch (const std::bad_alloc& error) {
+            reason = reason_of(error);
+            text = reason.c_str();
         } catch (const std::exception& error) {
             reason = "internal error: " + reason_of(error);
             text = reason.c_str();

@@ -1,6 +1,7 @@
 // puckloop-gap: what `puckloop gap` becomes. It serves nodes too: experiments on the emulator are runs.
 
 #include "run/factory/node_process.h"
+#include "tools/cli/file_size_limit.h"
 #include "tools/cli/program.h"
 #include "tools/gap/subcommands.h"
 
@@ -8,6 +9,7 @@
 
 int main(int argc, char** argv) {
     using namespace puckloop::tools;
+    survive_file_size_limit();
     if (const auto status = serve_as_node(argc, argv)) return *status;
     constexpr std::array<DeclareCommand, 1> kCommands{declare_gap};
     return run_program(kCommands, {argv + 1, argv + argc});
