@@ -1,12 +1,9 @@
 #include "run/run_scenario.h"
-
-#include "base/error.h"
-#include "cosim/resume/run_snapshot.h"
-#include "cosim/trace/trace_csv.h"
-#include "physics/render/trajectory_svg.h"
 #include "run/control/control_place.h"
 #include "run/debugging/run_debuggers.h"
 #include "run/driven/driven_run.h"
+#include "run/expectations/judge_expectations.h"
+#include "run/expectations/test_report.h"
 #include "run/factory/node_factory.h"
 #include "run/factory/preflight.h"
 #include "run/plan/state_plan.h"
@@ -16,6 +13,11 @@
 #include "run/report/results_folder.h"
 #include "run/report/run_log.h"
 #include "run/snapshots/snapshot_plan.h"
+
+#include "base/error.h"
+#include "cosim/resume/run_snapshot.h"
+#include "cosim/trace/trace_csv.h"
+#include "physics/render/trajectory_svg.h"
 
 #include <fmt/format.h>
 
@@ -44,7 +46,8 @@ physics::World with_added_things(const scenarios::Scenario& scenario) {
 /// Report and picture are made even if the run failed; of what goes wrong with them then only a missing
 /// report is news.
 void write_results(const RunSetup& setup, cosim::Outcome& outcome, const std::vector<UsedFile>& files,
-                   const std::vector<Failure>& failures, ReservedFile& report) {
+                   const std::vector<Failure>& failures, const std::vector<ExpectationResult>& expectations,
+                   ReservedFile& report) {
     const auto guarded = [&](auto work) {
         try {
             work();
@@ -64,7 +67,7 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, const std::ve
         if (!outcome.faults.empty()) write_faults_csv(outcome, setup.out / "faults.csv");
     });
     try {
-        write_report(setup, outcome, files, failures, report);
+        write_report(setup, outcome, files, failures, expectations, report);
     } catch (const RunError& error) {
         outcome.text = outcome.success ? error.what() : fmt::format("{}; {}", outcome.text, error.what());
         outcome.success = false;
@@ -108,6 +111,13 @@ void end_live(LiveTrace& live, cosim::Outcome& outcome) {
         if (outcome.success) outcome.text = error.what();
         outcome.success = false;
     }
+}
+
+void tell_met(const std::vector<ExpectationResult>& results, cosim::Outcome& outcome) {
+    if (results.empty()) return;
+    outcome.text += fmt::format("{}{} met", outcome.text.empty() ? "" : "; ",
+                                results.size() == 1 ? "what is expected is"
+                                                    : fmt::format("all {} expectations are", results.size()));
 }
 
 /// Into files that are new, or hold what is kept of a run that goes back.
@@ -210,6 +220,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         driven->drive(options, trace);
         factory = [&](const std::string& node) { return driven->make_node(node); };
     }
+    LineWatch lines(setup.scenario.expectations);
     cosim::Outcome outcome;
     do {
         const bool back = outcome.reason == cosim::EndReason::Reverted;
@@ -230,6 +241,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         if (record) conductor->add_sink(*record);
         if (live) conductor->add_sink(*live);
         if (driven) conductor->add_sink(driven->sink());
+        if (lines.watches()) conductor->add_sink(lines);
         log.started(*conductor);
         outcome = conductor->run();
     } while (outcome.reason == cosim::EndReason::Reverted);
@@ -251,7 +263,16 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     judge_snapshots(request, outcome);
     if (request.strict) judge_strictly(setup, outcome);
     log.ended(outcome);
-    write_results(setup, outcome, files, failures, report);
+    TestSuite suite{.name = setup.scenario.name,
+                    .trouble = outcome.success ? "" : outcome.text,
+                    .scenario = setup.scenario.file.string(),
+                    .out = setup.out.string(),
+                    .wall_s = outcome.wall_s,
+                    .results = judge_expectations(setup, outcome, lines)};
+    fail_unmet(setup, suite.results, failures, outcome);
+    if (outcome.success) tell_met(suite.results, outcome);
+    write_results(setup, outcome, files, failures, suite.results, report);
+    write_test_reports(request.junit, request.tap, suite, outcome);
     log.written();
     return outcome;
 }

@@ -10,7 +10,9 @@
 #include "emu/rab_board/signals.h"
 #include "physics/description/channels.h"
 #include "run/control/control_place.h"
+#include "run/expectations/judge_expectations.h"
 #include "run/files/program_path.h"
+#include "run/files/writable_file.h"
 #include "run/nodes/bluetooth_nodes.h"
 #include "run/nodes/cameras.h"
 #include "run/nodes/can_buses.h"
@@ -288,6 +290,9 @@ RunSetup set_up(const RunRequest& request) {
         debug_board(setup, assignment);
     plan_stats(setup, request);
     plan_snapshots(setup, request);
+    check_expectations(setup);
+    for (const auto& file : {request.junit, request.tap})
+        if (!file.empty()) check_writable(file);
     return setup;
 }
 

@@ -51,6 +51,8 @@ struct RunRequest {
     std::string live;                        ///< pcapng while the run goes on; "-": standard output
     std::vector<std::string> gdb;            ///< "NODE=PLACE": boards under a debugger
     std::vector<std::string> stats;          ///< boards that are profiled: nodes, kinds, or "all"
+    std::filesystem::path junit;             ///< the run as a test suite, JUnit's XML; empty: none
+    std::filesystem::path tap;               ///< the same as TAP; empty: none
     bool strict = false;                     ///< a run with warnings has failed
 };
 

@@ -79,6 +79,16 @@ ordered_json failures_json(const std::vector<Failure>& failures) {
     return list;
 }
 
+ordered_json expectations_json(const std::vector<ExpectationResult>& expectations) {
+    ordered_json list = ordered_json::array();
+    for (const ExpectationResult& one : expectations)
+        list.push_back({{"name", one.name},
+                        {"met", one.met},
+                        {"why", one.why},
+                        {"at_s", one.at ? ordered_json(*one.at) : ordered_json(nullptr)}});
+    return list;
+}
+
 /// What happened to the world.
 ordered_json events_of(const ordered_json& nodes) {
     const auto world = nodes.find("world");
@@ -144,7 +154,8 @@ void judge_strictly(const RunSetup& setup, cosim::Outcome& outcome) {
 }
 
 void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const std::vector<UsedFile>& files,
-                  const std::vector<Failure>& failures, ReservedFile& file) {
+                  const std::vector<Failure>& failures, const std::vector<ExpectationResult>& expectations,
+                  ReservedFile& file) {
     ordered_json nodes = ordered_json::object();
     for (const auto& node : outcome.nodes)
         nodes[node.name] = node_json(node);
@@ -180,6 +191,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
     if (setup.scenario.mission)
         report["mission"] =
             mission_score(*setup.scenario.mission, setup.out / "trajectory.csv", end_of(setup.scenario));
+    if (!expectations.empty()) report["expectations"] = expectations_json(expectations);
     if (!setup.scenario.not_taken.empty()) report["not_taken_over"] = setup.scenario.not_taken;
     if (!setup.from.empty())
         report["from"] = {{"file", setup.from.string()},

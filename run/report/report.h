@@ -3,6 +3,7 @@
 
 #include "cosim/conductor.h"
 #include "run/description/run_setup.h"
+#include "run/report/expectation_result.h"
 #include "run/report/failures.h"
 #include "run/report/provenance.h"
 #include "run/report/reserved_file.h"
@@ -20,7 +21,8 @@ inline constexpr int kReportFormat = 1;
 
 /// Writes report.json; throws RunError if the disk does not take it.
 void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const std::vector<UsedFile>& files,
-                  const std::vector<Failure>& failures, ReservedFile& file);
+                  const std::vector<Failure>& failures, const std::vector<ExpectationResult>& expectations,
+                  ReservedFile& file);
 
 /// Warnings of the setup, of the run and of its nodes, these with the node's name before them.
 std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome& outcome);

@@ -1,6 +1,7 @@
 #include "scenarios/reader/mission_table.h"
 
 #include "base/error.h"
+#include "scenarios/reader/region_keys.h"
 
 #include <fmt/format.h>
 
@@ -10,33 +11,9 @@ namespace puckloop::scenarios {
 
 namespace {
 
-constexpr double kLargest = 1000.0;  // m
-
-/// shape = "disc" with radius, or "rectangle" with size.
-missions::Region read_region(const std::string& file, const std::string& where, const TomlValue& table) {
+missions::Region read_region_of(const std::string& file, const std::string& where, const TomlValue& table) {
     Reader reader(file, where, table);
-    missions::Region region;
-    if (reader.has("centre")) {
-        const auto centre = reader.quantities("centre", Dimension::Length, 2);
-        region.x = centre[0];
-        region.y = centre[1];
-    }
-    const auto size = [&](const char* key, double value) {
-        if (!(value > 0.0 && value <= kLargest))
-            reader.fail(key, fmt::format("{} is out of range", key), "more than 0 m, at most 1000 m");
-        return value;
-    };
-    region.disc = reader.choice("shape", "rectangle", {"rectangle", "disc"}) == "disc";
-    if (const char* other = region.disc ? "size" : "radius"; reader.has(other))
-        reader.fail(other, fmt::format("a {} has no {}", region.disc ? "disc" : "rectangle", other),
-                    region.disc ? "radius" : "size");
-    if (region.disc) {
-        region.radius = size("radius", reader.quantity("radius", Dimension::Length));
-    } else {
-        const auto sides = reader.quantities("size", Dimension::Length, 2);
-        region.length = size("size", sides[0]);
-        region.width = size("size", sides[1]);
-    }
+    const missions::Region region = read_region(reader);
     reader.finish();
     return region;
 }
@@ -57,7 +34,7 @@ void refuse_unless(Reader& reader, const char* key, bool used, const std::string
 missions::Region read_needed(Reader& reader, const char* key) {
     const TomlValue* table = reader.table(key);
     if (!table) reader.fail_missing(key, fmt::format("[mission.{}] with shape and size or radius", key));
-    return read_region(reader.file(), fmt::format("mission.{}", key), *table);
+    return read_region_of(reader.file(), fmt::format("mission.{}", key), *table);
 }
 
 }  // namespace
@@ -91,7 +68,7 @@ std::optional<missions::Mission> read_mission(Reader& top, double period) {
     refuse_unless(reader, "cells", grid, mission.name);
     refuse_unless(reader, "at_end", aggregation, mission.name);
     for (const TomlValue* spot : reader.tables("spot"))
-        mission.spots.push_back(read_region(reader.file(), "mission.spot", *spot));
+        mission.spots.push_back(read_region_of(reader.file(), "mission.spot", *spot));
     if ((aggregation || foraging) && mission.spots.empty())
         reader.fail_missing("spot", "[[mission.spot]] with shape and size or radius");
     if (foraging) mission.nest = read_needed(reader, "nest");

@@ -11,6 +11,7 @@
 #include "scenarios/reader/compose/include.h"
 #include "scenarios/reader/compose/variables.h"
 #include "scenarios/reader/events/event_tables.h"
+#include "scenarios/reader/expect_tables.h"
 #include "scenarios/reader/faults/fault_tables.h"
 #include "scenarios/reader/mission_table.h"
 #include "scenarios/reader/radio_tables.h"
@@ -111,6 +112,7 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));
     scenario.events.events = read_events(top);
+    scenario.expectations = read_expectations(top);
     top.finish();
     physics::check(scenario.world);
     physics::check_events(scenario.events, scenario.world);

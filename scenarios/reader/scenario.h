@@ -8,6 +8,7 @@
 #include "emu/tam_avr/tam_spec.h"
 #include "missions/mission.h"
 #include "physics/events/event.h"
+#include "scenarios/reader/expectation.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -196,6 +197,7 @@ struct Scenario {
     std::vector<CanBus> can_buses{};
     std::optional<missions::Mission> mission{};
     std::vector<cosim::FaultSpec> faults;
+    std::vector<Expectation> expectations{};
     std::vector<std::string> allow{};      ///< failures that do not fail the run (allowed_failures.h)
     std::vector<std::string> not_taken{};  ///< of an ARGoS experiment: "line 7: ...", what is otherwise here
     std::vector<std::filesystem::path> files{};  ///< that it was read from, its own first

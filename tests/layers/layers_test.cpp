@@ -84,6 +84,7 @@ const std::vector<std::string> kFolders = {
     "run/plan",
     "run/snapshots",
     "run/report",
+    "run/expectations",
     "run/debugging",
     "run/driven",
     "run",

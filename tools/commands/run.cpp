@@ -245,6 +245,12 @@ void declare_run(Command& app, int& status) {
         ->allow_extra_args(false)
         ->check(one_of({"sr", "pcapng", "vcd"}));
     command
+        ->add_option("--junit", request.junit,
+                     "write the run and its [[expect]] tables as a test suite, JUnit's XML (docs/expect.md)")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command->add_option("--tap", request.tap, "the same as TAP")->check(not_empty())->type_name("FILE");
+    command
         ->add_option("--live", request.live,
                      "write the trace as pcapng while the run goes on: to a named pipe that Wireshark reads, "
                      "to - (the standard output) or a file")

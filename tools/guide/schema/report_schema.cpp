@@ -58,6 +58,16 @@ ordered_json report_schema() {
                          {"text", of("string", "")},
                          {"allowed", of("boolean", "by the scenario's `allow`")}}},
                        {"required", {"node", "kind", "text", "allowed"}}}}};
+    p["expectations"] = {{"type", "array"},
+                         {"description", "what the scenario's [[expect]] tables came to (docs/expect.md)"},
+                         {"items",
+                          {{"type", "object"},
+                           {"properties",
+                            {{"name", of("string", "what was expected")},
+                             {"met", of("boolean", "")},
+                             {"why", of("string", "what was seen, or that it was not")},
+                             {"at_s", or_null("number", "when it was first seen")}}},
+                           {"required", {"name", "met", "why", "at_s"}}}}};
     p["programs_asked_to_end_s"] = or_null("number", "simulated time");
     p["simulated_s"] = of("number", "");
     p["wall_s"] = of("number", "");

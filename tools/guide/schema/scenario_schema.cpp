@@ -122,6 +122,13 @@ constexpr SchemaKey kMission[]{
 constexpr SchemaKey kRegion[]{
     {"shape", "text", "rectangle (default) or disc"}, {"centre", "lengths2", "default the arena's"},
     {"size", "lengths2", "of a rectangle"}, {"radius", "length", "of a disc"}};
+constexpr SchemaKey kExpect[]{
+    {"name", "text", "for people; made from the other keys where there is none"},
+    {"log", "text", "a node, in whose log a line has `text`"}, {"text", "text", "to be found in a line of the log"},
+    {"link", "text", "a serial line that carries `bytes`"}, {"bytes", "text", "hexadecimal: 56 0D"}, {"from", "text", "the node that sends them"},
+    {"robot", "text", "that is in a region"}, {"no_reset", "text", "a board that starts once"},
+    {"shape", "text", "rectangle (default) or disc"}, {"centre", "lengths2", "of the region"}, {"size", "lengths2", "of a rectangle"}, {"radius", "length", "of a disc"},
+    {"after", "time", "not before"}, {"by", "time", "at the latest"}, {"seen", "flag", "false: it must not happen"}};
 constexpr SchemaKey kCan[]{{"name", "text", ""}, {"controllers", "texts", "robot0.pic.can1, ..."}};
 constexpr SchemaKey kFault[]{
     {"name", "text", ""}, {"link", "text", "robot0.uart, robot0.i2c, ..."}, {"node", "text", "robot0.pic, ..."},
@@ -291,6 +298,7 @@ ordered_json scenario_schema() {
     properties["ircom"] = table_schema("words by the light of proximity sensors", kIrcom);
     properties["fault"] = list_schema(fault_schema());
     properties["event"] = list_schema(event_schema());
+    properties["expect"] = list_schema(table_schema("what the run has to do (docs/expect.md)", kExpect));
     allow_text(schema, R"(\$\{)");
     properties["include"] = value_schema("texts", "files whose tables are read first");
     properties["variables"] = {{"type", "object"},

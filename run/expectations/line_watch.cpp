@@ -1,0 +1,42 @@
+#include "run/expectations/line_watch.h"
+
+#include <algorithm>
+
+namespace puckloop::tools {
+
+LineWatch::LineWatch(const std::vector<scenarios::Expectation>& expected) : expected_(expected) {
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        if (expected[i].kind == scenarios::Expectation::Kind::Line) watches_.emplace_back().index = i;
+}
+
+std::optional<double> LineWatch::seen_at(std::size_t index) const {
+    for (const Watch& watch : watches_)
+        if (watch.index == index) return watch.seen;
+    return std::nullopt;
+}
+
+void LineWatch::begin(const std::vector<cosim::LinkSpec>& links) {
+    links_ = links;
+    for (Watch& watch : watches_)
+        for (std::size_t i = 0; i < links.size(); ++i)
+            if (links[i].name == expected_[watch.index].subject) watch.link = i;
+}
+
+void LineWatch::record(const cosim::TraceRecord& record) {
+    const auto* frame = std::get_if<cosim::UartFrame>(&record.payload);
+    if (frame == nullptr || cosim::lost(record) || frame->is_break != 0) return;
+    for (Watch& watch : watches_) {
+        if (watch.link != record.link || watch.seen) continue;
+        const scenarios::Expectation& expected = expected_[watch.index];
+        const cosim::LinkSpec& link = links_[record.link];
+        const bool from_a = record.direction == cosim::Direction::FromA;
+        if (!expected.from.empty() && expected.from != (from_a ? link.a : link.b).node) continue;
+        std::string& last = watch.last[from_a ? 0 : 1];
+        last += static_cast<char>(frame->data);
+        if (last.size() > expected.text.size()) last.erase(0, 1);
+        const double time = cosim::to_seconds(record.time);
+        if (last == expected.text && time >= expected.after && time <= expected.by) watch.seen = time;
+    }
+}
+
+}  // namespace puckloop::tools

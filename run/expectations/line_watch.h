@@ -1,0 +1,40 @@
+#pragma once
+// Looks in the bytes of serial lines, as they pass, for those that the scenario expects.
+
+#include "cosim/trace/trace.h"
+#include "scenarios/reader/expectation.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+class LineWatch final : public cosim::TraceSink {
+  public:
+    /// Of all kinds; those of serial lines are watched. `expected` outlives this.
+    explicit LineWatch(const std::vector<scenarios::Expectation>& expected);
+
+    bool watches() const { return !watches_.empty(); }
+    /// When the last byte of the first match arrived within the time that the table states, s; by the table's
+    /// index in `expected`.
+    std::optional<double> seen_at(std::size_t index) const;
+
+    void begin(const std::vector<cosim::LinkSpec>& links) override;
+    void record(const cosim::TraceRecord& record) override;
+
+  private:
+    struct Watch {
+        std::size_t index = 0;
+        std::optional<std::size_t> link{};
+        std::string last[2]{};  ///< bytes of each direction, as many as are looked for
+        std::optional<double> seen{};
+    };
+
+    const std::vector<scenarios::Expectation>& expected_;
+    std::vector<cosim::LinkSpec> links_;
+    std::vector<Watch> watches_;
+};
+
+}  // namespace puckloop::tools
