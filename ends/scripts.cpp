@@ -75,7 +75,7 @@ std::optional<std::uint8_t> byte_of(std::string_view digits) {
 }
 
 I2cRawStep raw_step(std::string_view file, const TextLine& line, std::string_view word) {
-    constexpr std::string_view kSteps = "sXX, wXX, r, n or p, hexadecimal; /1 to /7 behind all but p";
+    constexpr std::string_view kSteps = "sXX, wXX, r, n or p, hexadecimal; /1 to /7 after all but p";
     const auto wrong = [&] {
         wrong_shape(file, line, fmt::format("'{}' is no step of a master", readable(word)), kSteps);
     };
@@ -112,7 +112,7 @@ std::vector<I2cRawStep> raw_steps(std::string_view file, const TextLine& line) {
             wrong_shape(file, line, "a byte that is broken off is followed by another",
                         "a START or STOP, which breaks it off");
         if (steps[i - 1].kind == Kind::Stop && steps[i].kind != Kind::Start)
-            wrong_shape(file, line, "a byte without a START before it", "sXX behind p");
+            wrong_shape(file, line, "a byte without a START before it", "sXX after p");
     }
     return steps;
 }

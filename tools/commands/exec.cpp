@@ -48,7 +48,7 @@ std::vector<std::uint8_t> fuse_bytes(const std::string& text) {
     std::vector<std::uint8_t> bytes;
     const auto wrong = [&] {
         return InputError("", "--fuses", fmt::format("'{}' are no fuse bytes", text),
-                          "0xLOW,0xHIGH,0xEXTENDED, perhaps ,0xLOCK behind");
+                          "0xLOW,0xHIGH,0xEXTENDED, perhaps ,0xLOCK after them");
     };
     for (std::size_t at = 0; at <= text.size();) {
         const std::size_t end = std::min(text.find(',', at), text.size());
@@ -137,7 +137,7 @@ void describe(Command& app, Arguments& a) {
     app.add_option(
            "--watch", i.watches,
            "variable, register or 0xADDRESS of data space, perhaps :BYTES, perhaps /r, /w (default) or "
-           "/rw behind it: ends the run behind an instruction that touches it; repeatable, as --stop-at")
+           "/rw: ends the run after an instruction that touches it; repeatable, as --stop-at")
         ->allow_extra_args(false);
     app.add_option(
            "--trace", i.trace,
@@ -185,7 +185,7 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--i2c-device", o.i2c_devices,
                    "on the bus of a target that is its master, repeatable: ground (0x60), turret (0x61), "
                    "lsm330 (0x1E, 0x6A) or rab=IMAGE (a range-and-bearing board with its firmware); @0xADDR "
-                   "behind it for another "
+                   "after it for another "
                    "address")
         ->allow_extra_args(false);
     app.add_option("--i2c-clock", o.i2c_master.clock_hertz, "its SCL in Hz")

@@ -271,8 +271,8 @@ void declare_run(Command& app, int& status) {
     command
         ->add_option("--gdb", request.gdb,
                      "NODE=PLACE: the run waits for GDB at PLACE, unix:PATH (this user's alone) or :PORT (on "
-                     "127.0.0.1: open to every user of this machine), and stands "
-                     "still whenever that stops the board NODE (robot0.pic, tam0.avr, ...); repeatable "
+                     "127.0.0.1: open to every user of this machine), and waits "
+                     "whenever that stops the board NODE (robot0.pic, tam0.avr, ...); repeatable "
                      "(docs/debugging.md)")
         ->allow_extra_args(false)
         ->type_name("NODE=PLACE");
@@ -284,10 +284,9 @@ void declare_run(Command& app, int& status) {
         ->allow_extra_args(false)
         ->check(not_empty())
         ->type_name("NODE");
-    command->add_flag(
-        "--control", options->control,
-        "a client drives the run: it stands still at the beginning until one comes to the socket that "
-        "control.json in the results names (docs/control_protocol.md)");
+    command->add_flag("--control", options->control,
+                      "a client drives the run: it waits at its beginning until one comes to the socket that "
+                      "control.json in the results names (docs/control_protocol.md)");
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
                       "model, I2C addresses that nobody acknowledges, ...");
