@@ -159,9 +159,10 @@ class Run:
 
     def __init__(self, process: subprocess.Popen[bytes], line: Line, results: pathlib.Path,
                  temporary: tempfile.TemporaryDirectory[str] | None, in_process: bool,
-                 faults: Sequence[str]) -> None:
+                 faults: Sequence[str], command: Sequence[str]) -> None:
         self._process, self._line, self.results, self._temporary = process, line, results, temporary
         self._in_process = in_process
+        self.command = list(command)  #: that began it
         self._faults = tuple(faults)
         self._duts: list[Dut] = []
         self._captures: list[dict[str, str]] = []
@@ -201,7 +202,7 @@ class Run:
             if temporary:
                 temporary.cleanup()
             raise
-        return Run(process, line, results, temporary, in_process, faults)
+        return Run(process, line, results, temporary, in_process, faults, command)
 
     @staticmethod
     def _connect(process: subprocess.Popen[bytes], note: pathlib.Path, results: pathlib.Path) -> Line:
