@@ -152,7 +152,7 @@ void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
         return;
     case Bus::Owned:
         if (owner_ == port && !pending_) {
-            release_devices(phase.start, Ending::RepeatedStart);
+            release_devices(phase.start, Ending::RepeatedStart, phase.byte);
             address(port, phase, 0);
             return;
         }

@@ -198,7 +198,9 @@ class I2cBusNode final : public Node {
     void settle();
     /// How the transfer of the devices that are addressed ends.
     enum class Ending { Stop, RepeatedStart, Reset };
-    void release_devices(Time now, Ending ending);
+    /// `address_byte`: of a repeated START.
+    void release_devices(Time now, Ending ending, std::uint8_t address_byte = 0);
+    bool informed_of(PortIndex device, std::uint8_t address_byte) const;
     bool own_master(PortIndex device, PortIndex master) const;
     void hang();
     void let_go(const I2cPhase& phase);

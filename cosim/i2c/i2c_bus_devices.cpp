@@ -37,6 +37,12 @@ bool I2cBusNode::own_master(PortIndex device, PortIndex master) const {
     return options_.devices[device - options_.masters.size()].master == master;
 }
 
+/// A START with this address byte reaches the device.
+bool I2cBusNode::informed_of(PortIndex device, std::uint8_t address_byte) const {
+    const auto& addresses = options_.devices[device - options_.masters.size()].addresses;
+    return addresses.empty() || contains(addresses, static_cast<std::uint8_t>(address_byte >> 1));
+}
+
 bool I2cBusNode::awaits_devices() const {
     const auto others = [](const std::vector<PortIndex>& ports) {
         return std::any_of(ports.begin(), ports.end(), [](PortIndex port) { return port != kFault; });
@@ -66,9 +72,8 @@ void I2cBusNode::offer_address(const I2cPhase& seen) {
             take_answer(reply, std::string(slave->name()));
         }
     for (std::size_t i = 0; i < options_.devices.size(); ++i) {
-        const auto& addresses = options_.devices[i].addresses;
-        if (!addresses.empty() && !contains(addresses, wanted)) continue;
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
+        if (!informed_of(device, seen.byte)) continue;
         if (own_master(device, pending_->master)) continue;
         answers_.push_back({std::max(seen.start + told_after(device), pending_->earliest), device, seen});
         pending_->open.push_back(device);
@@ -174,9 +179,9 @@ void I2cBusNode::settle() {
            done.earliest);
 }
 
-/// A STOP is noticed by all who watch the bus. A repeated START reaches a device that watches all of them by
-/// itself, and is no STOP: a ten-bit address holds on.
-void I2cBusNode::release_devices(Time now, Ending ending) {
+/// A STOP is noticed by all who watch the bus. A repeated START is none: a ten-bit address holds on. Devices
+/// that are informed of the START find the end of their transfer in it, the others get a STOP in its place.
+void I2cBusNode::release_devices(Time now, Ending ending, std::uint8_t address_byte) {
     I2cPhase stop;
     stop.start = now;
     for (std::size_t i = 0; i < options_.devices.size(); ++i) {
@@ -187,8 +192,7 @@ void I2cBusNode::release_devices(Time now, Ending ending) {
             answers_.push_back({now + told_after(device), device, stop});
     }
     for (const PortIndex device : addressed_devices_) {
-        const bool watches = options_.devices[device - options_.masters.size()].master.has_value();
-        if (ending != Ending::RepeatedStart || !watches)
+        if (ending != Ending::RepeatedStart || !informed_of(device, address_byte))
             answers_.push_back({now + told_after(device), device, stop});
     }
     addressed_devices_.clear();

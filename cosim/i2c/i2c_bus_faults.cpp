@@ -21,7 +21,8 @@ I2cPhase I2cBusNode::begin_phase(PortIndex port, const I2cPhase& phase, Time ear
     if (damage.second_device) take_answer({true, damage.value, 0}, {});
     if (damage.reset) reset_devices(phase.start);
     if (damage.stopped || damage.restarted)
-        release_devices(phase.start, damage.stopped ? Ending::Stop : Ending::RepeatedStart);
+        release_devices(phase.start, damage.stopped ? Ending::Stop : Ending::RepeatedStart,
+                        damage.phase.byte);
     if (damage.restarted) {
         pending.addresses = true;
         damage.phase.kind = I2cPhaseKind::Start;

@@ -136,6 +136,30 @@ TEST_CASE("ten-bit addresses: both bytes count, and seven-bit ones do not reach 
     CHECK(bus.linux_results[5].data == "\x77");
 }
 
+// UM10204, 3.1.11: the slave remembers that it was addressed until a STOP or a START for another; a read goes
+// on with a repeated START and the first byte alone.
+TEST_CASE("a range-and-bearing board with a ten-bit address is read after a repeated start") {
+    SharedBus bus;
+    bus.rab_board = tests::kTenBitBoard;
+    bus.boards.push_back({.address = 0x20});
+    auto mixed = ten(reading(0x2A5, 2, 2));  // with a START for another in between
+    mixed.messages.insert(mixed.messages.begin() + 1, writing(0x20, {7, 0x42}).messages[0]);
+    bus.linux_board = {{20 * kMillisecond, ten(writing(0x2A5, {2, 0x77, 0x78}))},
+                       {30 * kMillisecond, ten(reading(0x2A5, 2, 2))},
+                       {40 * kMillisecond, ten(reading(0x2A4, 2, 1))},
+                       {50 * kMillisecond, mixed},
+                       {60 * kMillisecond, ten(reading(0x2A5, 3, 1))}};
+    bus.run();
+    REQUIRE(bus.linux_results.size() == 5);
+    CHECK(bus.linux_results[0].error == 0);
+    CHECK(bus.linux_results[1].error == 0);
+    CHECK(bus.linux_results[1].data == "\x77\x78");
+    CHECK(bus.linux_results[2].error == EREMOTEIO);
+    CHECK(bus.linux_results[3].data == "\x77\x78");
+    CHECK(bus.boards[0].seen.at(7) == 0x42);
+    CHECK(bus.linux_results[4].data == "\x78");
+}
+
 TEST_CASE("both roles: the main board writes to a board while a Linux board reads and writes it") {
     std::uint64_t lost = 0;
     for (unsigned seed = 1; seed <= 4; ++seed) {

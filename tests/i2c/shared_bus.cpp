@@ -2,6 +2,7 @@
 
 #include "emu/dspic/devices/device.h"
 #include "emu/pic/pic_node.h"
+#include "emu/rab_board/rab_node.h"
 #include "tests/node_under_test.h"
 
 #include <catch2/catch.hpp>
@@ -167,6 +168,11 @@ void SharedBus::run_once(std::optional<std::uint64_t> chop) {
         spec.boards.push_back({"main_board", {}, false, true});
         links.push_back({"i2c.main_board", {"pic", "i2c_slave"}, {"bus", "main_board"}});
     }
+    if (!rab_board.empty()) {
+        spec.boards.push_back({"rab"});
+        nodes.push_back({"rab", "rab", {}});
+        links.push_back({"i2c.rab", {"rab", "i2c"}, {"bus", "rab"}});
+    }
     nodes[0].json = "bus";
     nodes[1].json = "pic";
     nodes[2].json = "linux";
@@ -178,6 +184,12 @@ void SharedBus::run_once(std::optional<std::uint64_t> chop) {
             board.i2c_slave = true;
             board.fastest_i2c_hertz = hertz;
             return std::make_unique<Watched>(assembled(dspic::dspic30f6014a(), main_board), board, *this);
+        }
+        if (name == "rab") {
+            rab::RabNodeOptions board;
+            board.board.name = "rab";
+            board.fastest_i2c_hertz = hertz;
+            return std::make_unique<rab::RabNode>(assembled(dspic::dspic33fj256gp710(), rab_board), board);
         }
         if (name == "pic") return std::make_unique<Master>(name, kPicPeriod, pic, pic_results);
         if (name == "linux")

@@ -34,6 +34,7 @@ struct SharedBus {
     /// Assembler source: the master "pic" is a main board with this program in place of the list, and a
     /// device too.
     std::string main_board{};
+    std::string rab_board{};  ///< the same for a range-and-bearing board, which is a device only
     std::vector<Board> boards;
     bool ground_sensor = false;
     std::vector<cosim::FaultSpec> faults{};

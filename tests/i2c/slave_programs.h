@@ -127,6 +127,49 @@ send:   mov I2CRCV, w1
                        address, control, beside);
 }
 
+// A dsPIC33F at the ten-bit address 0x2A5: 256 registers behind a pointer, by interrupt.
+inline const std::string kTenBitBoard = R"(
+        .org 0x0034
+        .pword served
+        .org 0x200
+main:   mov #0x1000, w15
+        mov #0x27f0, w0
+        mov w0, SPLIM
+        mov #0x2A5, w0
+        mov w0, I2C1ADD
+        mov #0x9640, w0
+        mov w0, I2C1CON
+        bset IEC1, #0
+rest:   bra rest
+served: bclr IFS1, #0
+        mov I2C1STAT, w0
+        mov I2C1RCV, w1
+        btst w0, #2
+        bra nz, send
+        btst w0, #5
+        bra nz, data
+        setm w9
+        bra free
+data:   cp0 w9
+        bra z, store
+        mov w1, w10
+        clr w9
+        bra free
+store:  mov #0x0A00, w2
+        add w2, w10, w2
+        mov.b w1, [w2]
+        inc w10, w10
+        bra free
+send:   mov #0x0A00, w2
+        add w2, w10, w2
+        mov.b [w2], w1
+        ze w1, w1
+        mov w1, I2C1TRN
+        inc w10, w10
+free:   bset I2C1CON, #12
+        retfie
+)";
+
 // Writes a counter to register 7 of 0x20, again and again, however often it loses the bus.
 inline const std::string kWritesToo = R"(
         clr w7
