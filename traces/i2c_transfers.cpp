@@ -39,6 +39,8 @@ void I2cTransfers::add(const TraceRow& row, const I2cPhase& phase) {
     Link& link = links_[row.link];
     if (link.device) return;
     if (is_request(phase.kind)) {
+        // The bus's notice that another master sends the same (cosim/i2c/i2c_shared.h).
+        if (!link.open.empty() && row.from != link.open.front().master) return;
         if (is_of(row.link, row.from)) {
             link.device = true;
             return;

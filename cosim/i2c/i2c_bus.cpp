@@ -113,6 +113,7 @@ void I2cBusNode::receive(const Message& message) {
 }
 
 void I2cBusNode::phase_from(PortIndex port, const I2cPhase& phase) {
+    if (bus_ == Bus::Owned && shares(port)) return turn_from(port, phase);
     const bool owns = bus_ == Bus::Owned && owner_ == port;
     switch (phase.kind) {
     case I2cPhaseKind::Start:
@@ -188,9 +189,21 @@ void I2cBusNode::resolve_contest() {
     owner_ = winner->port;
     const Time decided = changes_;
     changes_ = kNever;
-    for (const auto& contender : contenders_)
-        if (contender.port != owner_) lose(contender.port, contender.phase);
-    const I2cPhase phase = winner->phase;
+    I2cPhase phase = winner->phase;
+    for (const auto& contender : contenders_) {
+        if (contender.phase.byte != phase.byte) {
+            lose(contender.port, contender.phase);
+            continue;
+        }
+        sharers_.push_back(contender.port);
+    }
+    if (sharers_.size() == 1) sharers_.clear();
+    announce_ = !sharers_.empty();
+    for (const auto& contender : contenders_) {
+        if (!shares(contender.port)) continue;
+        phase.start = std::max(phase.start, contender.phase.start);
+        phase.clock_period = std::max(phase.clock_period, contender.phase.clock_period);
+    }
     contenders_.clear();
     address(owner_, phase, decided);
 }
@@ -268,7 +281,7 @@ Time I2cBusNode::earliest_output(PortIndex port) const {
 Time I2cBusNode::lookahead(PortIndex port) const {
     if (is_world(port)) return nominal_period_;
     if (!is_master(port)) return told_after(port);
-    return awaits_devices() ? nominal_period_ : kClocksOfByte * nominal_period_;
+    return awaits_devices() || !sharers_.empty() ? nominal_period_ : kClocksOfByte * nominal_period_;
 }
 
 }  // namespace puckloop::cosim

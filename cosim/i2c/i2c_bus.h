@@ -14,6 +14,12 @@
 // Linux), and is lost where the master only sees a collision (the dsPIC). Starts within half a nominal clock
 // of each other collide: the lower address byte wins, as its first 0 against a 1 does on the wires.
 //
+// Masters with the same address byte go on together (i2c_shared.h): SCL stays low until each has stated what
+// it does next, and the first bit in which they differ decides, in data bytes and in the ninth clock of a
+// byte read. The loser's BusLost is stamped with the end of that bit's clock; while masters share the bus its
+// lookahead is one nominal clock. In the first clock of a byte a 0 is stronger than a STOP (SDA does not
+// rise), a STOP than a repeated START (SDA is low), a repeated START than a 1 (SDA falls while SCL is high).
+//
 // Devices that are nodes of their own have a port each. As on the wires, each of them sees every Start (or
 // those for `addresses`, if it has any) and decides itself whether it is meant; a device must answer: one
 // that is switched off answers ack = 0. Those that acknowledged get what follows: Write, Read and Stop. All
@@ -42,9 +48,11 @@
 // Linux driver has given it nine clocks and a STOP (i2c_generic_scl_recovery()); a dsPIC only sees a
 // collision.
 //
-// Deviations: 1. a lost arbitration is reported when the ninth clock ends, not at the bit. 2. Two masters
-// that send the same address byte do not go on together into the data: the first port wins. 3. SCL of
-// colliding masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
+// Deviations: 1. an arbitration lost in the address byte of a START is reported when the ninth clock ends,
+// not at the bit. 2. A repeated START of masters that share the bus begins with its address byte: it collides
+// then. Of two masters of which one reads while the other writes the writer goes on. 3. SCL of colliding
+// masters is the winner's, of those that go on together the slowest's. 4. Pins driven low by a master's ports
+// do not disturb the bus.
 
 #include "base/checkpoint.h"
 #include "cosim/core/node.h"
@@ -119,6 +127,7 @@ class I2cBusNode final : public Node {
         archive(bus_, owner_, addressed_, addressed_devices_, read_, finished_, pending_, holders_, crowds_);
         archive(stuck_since_, stuck_for_, stuck_names_, changes_, contenders_, waiting_, answers_);
         archive(emitted_at_, counters_, log_, now_, faults_, line_released_, incomplete_byte_);
+        archive(sharers_, turns_, reads_, ninth_, given_, refusing_, line_low_, announce_, byte_read_);
     }
 
     struct Contender {
@@ -202,6 +211,7 @@ class I2cBusNode final : public Node {
     void release_devices(Time now, Ending ending, std::uint8_t address_byte = 0);
     bool informed_of(PortIndex device, std::uint8_t address_byte) const;
     bool own_master(PortIndex device, PortIndex master) const;
+    bool own_transfer(PortIndex device) const;
     void hang();
     void let_go(const I2cPhase& phase);
     void sda_held();
@@ -210,6 +220,17 @@ class I2cBusNode final : public Node {
     std::string device_list() const;
     std::vector<std::string> warnings() const;
     void stop_from(PortIndex port, const I2cPhase& phase);
+    bool shares(PortIndex port) const;
+    void turn_from(PortIndex port, const I2cPhase& phase);
+    void take_turns();
+    void answer_sharer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, bool low, int clocks);
+    void lose_share(PortIndex port, const I2cPhase& phase, int clocks);
+    void drop_sharer(PortIndex port);
+    void give_up(PortIndex port, const I2cPhase& phase);
+    void forget_sharers();
+    void answer_readers(const Pending& done);
+    void decide_ninth_clock();
+    void answer_masters(const Pending& done, I2cPhaseKind kind, const I2cAnswer& reply);
     void bus_freed();
     void lose(PortIndex port, const I2cPhase& phase);
     void answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& answer,
@@ -251,7 +272,17 @@ class I2cBusNode final : public Node {
     Time changes_ = kNever;              // a contest is decided, a stop or recovery is over
     std::vector<Contender> contenders_;  // for the bus, now
     std::vector<Contender> waiting_;     // for its end
-    std::vector<Message> answers_;       // known, to leave with this advance
+    /// Masters that sent the same so far, the owner among them, until the STOP; empty: it is alone.
+    std::vector<PortIndex> sharers_;
+    std::vector<Contender> turns_;     // what sharers do next
+    std::vector<Contender> reads_;     // what they did last, each with its own acknowledge
+    std::vector<PortIndex> ninth_;     // sharers whose acknowledge of a byte read is to come
+    std::vector<Contender> given_;     // those that have come
+    std::vector<Contender> refusing_;  // sharers that refuse the byte, until it is known who acknowledges
+    bool line_low_ = false;            // somebody acknowledges it
+    bool announce_ = false;            // the sharers are to be informed with their answer
+    std::uint8_t byte_read_ = 0;
+    std::vector<Message> answers_;  // known, to leave with this advance
     Time emitted_at_ = 0;
     Counters counters_;
     I2cLog log_;

@@ -1,6 +1,7 @@
 // The devices' side of the I2C bus: who is addressed, what several answers become on the wires, a stuck bus.
 
 #include "cosim/i2c/i2c_bus.h"
+#include "cosim/i2c/i2c_shared.h"
 
 #include <algorithm>
 
@@ -35,6 +36,13 @@ Time I2cBusNode::told_after(PortIndex device) const {
 
 bool I2cBusNode::own_master(PortIndex device, PortIndex master) const {
     return options_.devices[device - options_.masters.size()].master == master;
+}
+
+/// The transfer under way is one of the device's own chip.
+bool I2cBusNode::own_transfer(PortIndex device) const {
+    return own_master(device, owner_) || std::any_of(sharers_.begin(), sharers_.end(), [&](PortIndex master) {
+               return own_master(device, master);
+           });
 }
 
 /// A START with this address byte reaches the device.
@@ -74,7 +82,7 @@ void I2cBusNode::offer_address(const I2cPhase& seen) {
     for (std::size_t i = 0; i < options_.devices.size(); ++i) {
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
         if (!informed_of(device, seen.byte)) continue;
-        if (own_master(device, pending_->master)) continue;
+        if (own_transfer(device)) continue;
         answers_.push_back({std::max(seen.start + told_after(device), pending_->earliest), device, seen});
         pending_->open.push_back(device);
     }
@@ -157,26 +165,41 @@ void I2cBusNode::settle() {
         crowd.names = done.who;
         log_.crowded(now_, done.phase.byte, done.who, crowd.times);
     }
+    if (announce_ && done.addresses) {
+        announce_ = false;
+        I2cPhase notice = done.phase;
+        notice.kind = kSharedNotice;
+        for (const PortIndex port : sharers_)
+            answers_.push_back(
+                {std::max(ninth_clock(done.phase), done.earliest) + done.answer.stretch, port, notice});
+    }
     if (done.lost) {
-        ++counters_.lost;
-        log_.lost(now_, done.master, done.phase);
-        answer(done.master, done.phase, I2cPhaseKind::BusLost, {false, 0xFF, done.answer.stretch},
-               done.earliest);
+        answer_masters(done, I2cPhaseKind::BusLost, {false, 0xFF, done.answer.stretch});
         bus_ = Bus::Recovering;  // until the STOP of whoever has it now
         changes_ = std::max(done.busy_until, now_ + nominal_period_);
         return;
     }
     if (done.phase.kind == I2cPhaseKind::Write && read_ && (done.phase.byte & ~done.answer.byte) != 0) {
-        ++counters_.lost;
-        log_.lost(now_, done.master, done.phase);
-        answer(done.master, done.phase, I2cPhaseKind::BusLost, {false, kReleased, done.answer.stretch},
-               done.earliest);
+        answer_masters(done, I2cPhaseKind::BusLost, {false, kReleased, done.answer.stretch});
         return sda_held();  // nobody clocks the rest of the byte
     }
     done.answer.byte ^= done.flipped;
     const bool read = done.phase.kind == I2cPhaseKind::Read;
-    answer(done.master, done.phase, read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge, done.answer,
-           done.earliest);
+    if (read && !sharers_.empty()) return answer_readers(done);
+    answer_masters(done, read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge, done.answer);
+}
+
+/// One, or all that share the bus.
+void I2cBusNode::answer_masters(const Pending& done, I2cPhaseKind kind, const I2cAnswer& reply) {
+    const std::vector<PortIndex> masters = sharers_.empty() ? std::vector{done.master} : sharers_;
+    for (const PortIndex port : masters) {
+        if (kind == I2cPhaseKind::BusLost) {
+            ++counters_.lost;
+            log_.lost(now_, port, done.phase);
+        }
+        answer(port, done.phase, kind, reply, done.earliest);
+    }
+    if (kind == I2cPhaseKind::BusLost) forget_sharers();
 }
 
 /// A STOP is noticed by all who watch the bus. A repeated START is none: a ten-bit address holds on. Devices
@@ -188,7 +211,7 @@ void I2cBusNode::release_devices(Time now, Ending ending, std::uint8_t address_b
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
         const bool addressed = std::find(addressed_devices_.begin(), addressed_devices_.end(), device) !=
                                addressed_devices_.end();
-        if (ending == Ending::Stop && !addressed && options_.devices[i].master && !own_master(device, owner_))
+        if (ending == Ending::Stop && !addressed && options_.devices[i].master && !own_transfer(device))
             answers_.push_back({now + told_after(device), device, stop});
     }
     for (const PortIndex device : addressed_devices_) {
@@ -205,6 +228,7 @@ void I2cBusNode::release_devices(Time now, Ending ending, std::uint8_t address_b
 /// The owner gives up while devices hold SCL low.
 void I2cBusNode::hang() {
     bus_ = Bus::Stuck;
+    forget_sharers();
     holders_ = pending_->open;
     for (const PortIndex device : holders_)  // those of a Start are not addressed yet, but will want a STOP
         if (device != kFault && std::find(addressed_devices_.begin(), addressed_devices_.end(), device) ==

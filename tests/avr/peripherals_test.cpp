@@ -277,6 +277,61 @@ wait:   lds r17, TWCR
     CHECK(rig.ram(0x103) == 0xF8);
 }
 
+// Data sheet 8272, 21.9: TWWC is cleared by writing TWDR while TWINT is high, and by nothing else; TWSR holds
+// a status while TWINT is set, at all other times 0xF8; TWDR always contains the last byte on the bus.
+TEST_CASE("TWWC, TWSR without TWINT and TWDR after a lost arbitration") {
+    Rig rig(R"(
+        ldi r16, 72         ; 100 kHz
+        sts TWBR, r16
+        ldi r16, 0xA4
+        sts TWCR, r16       ; START
+        rcall wait
+        ldi r17, 0xC1
+        sts TWDR, r17
+        ldi r16, 0x84
+        sts TWCR, r16       ; address
+        ldi r17, 0x55
+        sts TWDR, r17       ; too early
+        lds r17, TWSR
+        sts 0x0100, r17     ; while TWINT is low
+        rcall wait
+        lds r17, TWCR
+        sts 0x0101, r17
+        lds r17, TWDR
+        sts 0x0102, r17
+        lds r17, TWSR
+        sts 0x0103, r17
+        sts TWCR, r16       ; let the bus go
+        lds r17, TWCR
+        sts 0x0104, r17
+        lds r17, TWSR
+        sts 0x0105, r17
+loop:   rjmp loop
+wait:   lds r17, TWCR
+        sbrs r17, 7
+        rjmp wait
+        ret
+)");
+    while (rig.phases.empty())
+        rig.chip.run_until(rig.chip.now() + cosim::kMicrosecond);
+    cosim::I2cPhase answer = rig.phases[0];
+    CHECK(answer.byte == 0xC1);
+    const cosim::Time begun = answer.start;
+    answer.kind = Kind::BusLost;
+    answer.byte = 0x9A;
+    rig.chip.run_until(begun + 2 * answer.clock_period);
+    rig.chip.twi_answer(answer);
+    rig.chip.run_until(begun + 8 * answer.clock_period);
+    CHECK(rig.ram(0x103) == 0);  // the status comes with the ninth clock
+    rig.chip.run_until(begun + 11 * answer.clock_period);
+    CHECK(rig.ram(0x100) == 0xF8);
+    CHECK((rig.ram(0x101) & 0x88) == 0x88);
+    CHECK(rig.ram(0x102) == 0x9A);
+    CHECK(rig.ram(0x103) == 0x38);
+    CHECK((rig.ram(0x104) & 0x88) == 0x08);
+    CHECK(rig.ram(0x105) == 0xF8);
+}
+
 TEST_CASE("the two-wire slave acknowledges its address and stretches SCL until TWINT is cleared") {
     Rig rig(R"(
         ldi r26, 0

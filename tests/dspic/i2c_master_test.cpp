@@ -133,6 +133,22 @@ TEST_CASE_METHOD(I2cBench, "arbitration lost sets BCL and frees the module") {
     CHECK(stat() & kAckstat);
 }
 
+// UM10204, 3.1.10: the byte that follows a START is the address. Nobody drives SDA in it: 0xFF, which is
+// reserved (table 4). What is sent then is a data byte for nobody.
+TEST_CASE_METHOD(I2cBench, "a byte received right behind a START is an address byte of ones on the wires") {
+    set(kSen);
+    done();
+    set(kRcen);
+    REQUIRE(pins.phases.size() == 1);
+    CHECK(pins.phases[0].kind == I2cPhaseKind::Start);
+    CHECK(pins.phases[0].byte == 0xFF);
+    answer(I2cPhaseKind::Acknowledge, 0xFF, false);
+    CHECK((stat() & kRbf) != 0);
+    CHECK(read(sfr::I2CRCV) == 0xFF);
+    write(sfr::I2CTRN, 0x40);
+    CHECK(pins.phases.back().kind == I2cPhaseKind::Write);
+}
+
 TEST_CASE_METHOD(I2cBench, "switching off in mid transfer frees the bus once the answer came") {
     set(kSen);
     done();

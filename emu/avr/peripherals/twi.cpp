@@ -1,5 +1,7 @@
 #include "emu/avr/peripherals/twi.h"
 
+#include "cosim/i2c/i2c_shared.h"
+
 #include <utility>
 
 namespace puckloop::avr {
@@ -27,6 +29,7 @@ constexpr std::uint8_t kStAddress = 0xA8, kStDataAck = 0xB8, kStDataNack = 0xC0,
 /// Addressed after arbitration was lost; a bus error.
 constexpr std::uint8_t kLostSrAddress = 0x68, kLostSrGeneral = 0x78, kLostStAddress = 0xB0, kBusError = 0x00;
 constexpr int kAnswerClocks = 8;
+constexpr int kClocksOfByte = 9;
 constexpr std::uint8_t kReleased = 0xFF;  // a byte that nobody drives
 constexpr unsigned kAddresses = 128;
 
@@ -61,8 +64,14 @@ void Twi::update_request() {
     around_.interrupts.request(kVector, (control() & kTwint) && (control() & kTwie));
 }
 
-void Twi::interrupt(std::uint8_t code) {
+/// TWSR holds a status while TWINT is set, at all other times 0xF8.
+void Twi::show_status(std::uint8_t code) {
     status() = static_cast<std::uint8_t>((status() & kTwps) | code);
+}
+
+void Twi::interrupt(std::uint8_t code) {
+    state_.code = code;
+    show_status(code);
     control() |= kTwint;
     update_request();
 }
@@ -90,7 +99,7 @@ void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
     const bool cleared = value & kTwint;
     self.control() = static_cast<std::uint8_t>((value & (kTwea | kTwsta | kTwsto | kTwen | kTwie)) |
                                                (old & kKept) | (cleared ? 0 : old & kTwint));
-    if (cleared) assign(self.control(), kTwwc, false);
+    if (cleared) self.show_status(kIdle);
     if ((old ^ value) & kTwen) {
         if (value & kTwen) {
             self.ports_.override_value(kScl, true, PinUser::Serial);
@@ -107,7 +116,7 @@ void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
             const bool taken = self.state_.bus_taken;
             self.reset();
             self.state_.bus_taken = taken;
-            self.status() = static_cast<std::uint8_t>((self.status() & kTwps) | kIdle);
+            self.show_status(kIdle);
         }
     }
     self.update_request();
@@ -162,7 +171,10 @@ void Twi::go_on() {
     const Cycle next = around_.now + 1;
     if (control() & kTwsto) {
         if (state_code() == kBusError) state_.owner = false;  // the lines are released, without a STOP
+        const bool waits = state_.owner && state_.shared;     // SCL rises when the other master lets it
         if (state_.owner) begin_phase(Kind::Stop, 0, false);
+        state_.awaiting = waits;
+        if (waits) return;
         return plan(Step::StopSent, next + period());
     }
     if (control() & kTwsta) return start(state_.owner, next);
@@ -187,7 +199,18 @@ void Twi::go_on() {
 
 void Twi::answer(const cosim::I2cPhase& phase) {
     if (!state_.awaiting) return;
+    if (phase.kind == cosim::kSharedNotice) {
+        state_.shared = true;
+        return;
+    }
+    const bool is_byte = state_.phase.kind != Kind::Stop;
+    if (phase.kind == Kind::BusLost && is_byte && state_.step == Step::None) {
+        const Cycle over = clock_.first_cycle_at(state_.phase.start) + kClocksOfByte * period();
+        if (over > around_.now) return answer_at(phase, over);
+    }
     state_.awaiting = false;
+    if (phase.kind == Kind::BusLost) state_.shared = false;
+    if (!is_byte && phase.kind != Kind::BusLost) return plan(Step::StopSent, around_.now);
     const bool reads = state_.phase.byte & kRead;
     switch (state_.phase.kind) {
     case Kind::Start:
@@ -206,7 +229,11 @@ void Twi::answer(const cosim::I2cPhase& phase) {
         data() = phase.byte;
         break;
     }
-    if (phase.kind == Kind::BusLost) state_.next_status = kLost;
+    if (phase.kind == Kind::BusLost) {
+        if (is_byte) data() = phase.byte;  // shifted in as by a slave
+        state_.next_status = kLost;
+        assign(control(), kTwsto, false);
+    }
     if (state_.next_status == kLost) state_.owner = false;
     interrupt(state_.next_status);
 }
@@ -236,9 +263,10 @@ void Twi::due(void* owner, Cycle cycle) {
         self.interrupt(st.next_status);
         break;
     case Step::StopSent:
-        st.owner = false;
+        st.owner = st.shared = false;
         assign(self.control(), kTwsto, false);
-        self.status() = static_cast<std::uint8_t>((self.status() & kTwps) | kIdle);
+        st.code = kIdle;
+        self.show_status(kIdle);
         if (self.control() & kTwsta) self.start(false, cycle);
         break;
     case Step::SlaveAnswer:

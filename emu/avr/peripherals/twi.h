@@ -4,9 +4,9 @@
 //
 // Deviations
 //  1. START and STOP take one SCL period each; a repeated START too.
-//  2. Arbitration is the bus's, and decided phase by phase: a lost one comes back as BusLost (status 0x38).
-//     Lost in the address, the winner's START comes in by slave_phase() first: the unit may be who it speaks
-//     to (0x68, 0x78, 0xB0).
+//  2. Arbitration is the bus's: a lost one comes back as BusLost (status 0x38 when the ninth clock of the
+//     byte is over; a STOP that another master's 0 prevents, at once). Lost in the address, the winner's
+//     START comes in by slave_phase() first: the unit may be who it speaks to (0x68, 0x78, 0xB0).
 //  3. A byte read from a slave that is to receive is received as ones, with the acknowledge that TWEA asks
 //     for; one written to a slave that is to send is the and of both, and not acknowledged.
 //  4. A START or STOP in the middle of an address byte, or of a byte of ours, is a bus error (0x00); other
@@ -63,10 +63,11 @@ class Twi {
         bool awaiting = false;  ///< a phase of ours is to be answered
         Step step = Step::None;
         std::uint8_t next_status = 0xF8;
-        cosim::I2cPhase phase;   ///< ours, or the master's that addresses us
-        cosim::I2cPhase answer;  ///< to ours, for Step::Answer
-        bool slave = false;      ///< addressed
-        bool sends = false;      ///< to send
+        std::uint8_t code = 0xF8;  ///< the newest status, which TWSR shows while TWINT is set
+        cosim::I2cPhase phase;     ///< ours, or the master's that addresses us
+        cosim::I2cPhase answer;    ///< to ours, for Step::Answer
+        bool slave = false;        ///< addressed
+        bool sends = false;        ///< to send
         bool general_call = false;
         bool slave_waits = false;  ///< the master's phase waits for TWINT to be cleared
         bool stop_waits = false;   ///< so does its STOP or repeated START
@@ -74,18 +75,20 @@ class Twi {
         bool start_waits = false;  ///< for the bus to be free
         Cycle address_ends = 0;    ///< of an address byte that is not ours
         bool lost = false;         ///< arbitration, to the master that now speaks to us
+        bool shared = false;       ///< another master sends the same (cosim/i2c/i2c_shared.h)
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(step, Step::None, Step::Answer);
-            archive(owner, awaiting, next_status, phase, answer, slave, sends, general_call, slave_waits,
-                    stop_waits, bus_taken, start_waits, address_ends, lost);
+            archive(owner, awaiting, next_status, code, phase, answer, slave, sends, general_call,
+                    slave_waits, stop_waits, bus_taken, start_waits, address_ends, lost, shared);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0xBC); }
     std::uint8_t& status() const { return around_.io.raw(0xB9); }
     std::uint8_t& data() const { return around_.io.raw(0xBB); }
-    unsigned state_code() const { return status() & 0xF8u; }
+    unsigned state_code() const { return state_.code; }
+    void show_status(std::uint8_t code);
     Cycle period() const;
     void plan(Step step, Cycle at);
     void interrupt(std::uint8_t code);

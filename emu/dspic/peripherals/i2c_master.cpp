@@ -1,10 +1,12 @@
 #include "emu/dspic/peripherals/i2c_master.h"
 
+#include "cosim/i2c/i2c_shared.h"
 #include "emu/dspic/peripherals/i2c_registers.h"
 #include "emu/dspic/peripherals/i2c_slave.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace puckloop::dspic {
 
@@ -23,6 +25,7 @@ constexpr double kStopClocks = 1.5;
 constexpr double kAcknowledgeClocks = 0.125;  // deviation 2
 constexpr double kByteClocks = 9.0;
 constexpr double kDataClocks = 8.0;
+constexpr std::uint8_t kReservedAddress = 0xFF;
 
 }  // namespace
 
@@ -86,7 +89,8 @@ void I2cMaster::stop_condition_seen(bool stopped) {
 
 /// The next byte follows one that was read and not acknowledged: the slave is to know.
 void I2cMaster::end_byte_read(cosim::Time start) {
-    if (state_.received && !state_.acknowledged) send(I2cPhaseKind::Acknowledge, 0, 0, start);
+    if (state_.received && !state_.acknowledged && !state_.shared)
+        send(I2cPhaseKind::Acknowledge, 0, 0, start);
     state_.received = false;
 }
 
@@ -103,6 +107,7 @@ void I2cMaster::complete(Cycle at) {
         break;
     case Activity::Stop:
         stop_condition_seen(true);
+        state_.shared = false;
         break;
     case Activity::Transmit:
         stat = static_cast<std::uint16_t>(stat & ~(kI2CxSTAT["TRSTAT"] | kI2CxSTAT["TBF"]));
@@ -144,6 +149,10 @@ void I2cMaster::answer_at(const cosim::I2cPhase& phase, Cycle at) {
 
 void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     if (!state_.awaits_answer) return;
+    if (phase.kind == cosim::kSharedNotice) {
+        state_.shared = true;
+        return;
+    }
     state_.awaits_answer = false;
     if (state_.stop_when_answered) {
         state_.stop_when_answered = false;
@@ -155,7 +164,10 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     std::uint16_t& stat = reg(kStat);
     if (phase.kind == I2cPhaseKind::BusLost) {
         stat |= kI2CxSTAT["BCL"];
-        state_.owns_bus = false;
+        state_.owns_bus = state_.shared = false;
+        if (state_.activity == Activity::Stop) state_.activity = Activity::Idle;  // none was made
+    } else if (state_.activity == Activity::Acknowledge || state_.activity == Activity::Stop) {
+        // The bus says when it is over.
     } else if (state_.activity == Activity::Transmit) {
         assign(stat, kI2CxSTAT["ACKSTAT"], !phase.ack);
         if (!phase.ack && address_sent_) ++refused_[sent_address_];
@@ -265,7 +277,12 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         con |= kI2CxCON["PEN"];
         const bool owned = state.owns_bus;
         state.owns_bus = false;
-        self.begin(Activity::Stop, kStopClocks);
+        if (state.shared) {  // SCL rises when the other master lets it
+            state.activity = Activity::Stop;
+            state.awaits_answer = true;
+        } else {
+            self.begin(Activity::Stop, kStopClocks);
+        }
         if (owned) self.send(I2cPhaseKind::Stop, 0, 0, start);
     } else if (asked & kI2CxCON["RCEN"]) {
         con |= kI2CxCON["RCEN"];
@@ -279,11 +296,20 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         state.activity = Activity::Receive;
         state.awaits_answer = state.received = true;
         state.acknowledged = false;
-        self.send(I2cPhaseKind::Read, 0, 1, start);
+        if (std::exchange(state.address_next, false)) {  // eight ones behind a START: nobody's address
+            self.address_sent_ = false;
+            self.send(I2cPhaseKind::Start, kReservedAddress, 0, start);
+            return;
+        }
+        self.send(I2cPhaseKind::Read, 0, state.shared ? cosim::kAcknowledgedLater : std::uint8_t{1}, start);
     } else {
         con |= kI2CxCON["ACKEN"];
         state.acknowledged = !(con & kI2CxCON["ACKDT"]);
-        self.begin(Activity::Acknowledge, kAcknowledgeClocks);
+        if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge, kAcknowledgeClocks);
+        state.activity = Activity::Acknowledge;
+        state.awaits_answer = true;
+        state.received = false;
+        self.send(I2cPhaseKind::Acknowledge, 0, state.acknowledged ? 1 : 0, start);
     }
 }
 

@@ -80,13 +80,14 @@ class I2cMaster {
         bool stop_when_answered = false;  ///< switched off meanwhile
         bool received = false;            ///< a byte, since the address ...
         bool acknowledged = false;        ///< ... by ACKEN, the newest
+        bool shared = false;              ///< another master sends the same (cosim/i2c/i2c_shared.h)
         Cycle buffer_empty = kNoCycle;
         Cycle ends = kNoCycle;  ///< of an activity that needs no answer
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(activity, Activity::Idle, Activity::Acknowledge);
-            archive(owns_bus, address_next, awaits_answer, stop_when_answered, received, acknowledged,
+            archive(owns_bus, address_next, awaits_answer, stop_when_answered, received, acknowledged, shared,
                     buffer_empty, ends);
         }
     };

@@ -1,5 +1,7 @@
 #include "linuxboard/shim/devices/i2c_adapter.h"
 
+#include "cosim/i2c/i2c_shared.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <utility>
@@ -43,6 +45,7 @@ void I2cAdapter::begin_next(Time now) {
     result_ = {};
     result_.owner = queue_.front().owner;
     message_ = 0;
+    shared_ = stopping_ = false;
     step_ = Step::Start;
     next_ = std::max(now, bus_free_) + hold_;
     if (queue_.front().messages.empty()) step_ = Step::Finish;
@@ -93,8 +96,9 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
             next_ = timeout_at_;
         } else if (step_ == Step::Stop) {
             begun.push_back(phase(I2cPhaseKind::Stop));
-            step_ = Step::Finish;
-            next_ += period_;
+            stopping_ = shared_;
+            step_ = stopping_ ? Step::Waiting : Step::Finish;
+            next_ = stopping_ ? cosim::later(next_, transfer.timeout) : next_ + period_;
         } else if (step_ == Step::Finish) {
             bus_free_ = next_;
             result_.time = next_;
@@ -106,6 +110,7 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
             queue_.pop_front();
             begin_next(done);
         } else {  // the message took too long: the driver resets its controller, which lets the bus go
+            shared_ = stopping_ = false;
             fail(ETIMEDOUT, next_, true);
         }
     }
@@ -139,6 +144,16 @@ void I2cAdapter::after_byte(Time now) {
 
 void I2cAdapter::deliver(const I2cPhase& answer, Time now) {
     if (step_ != Step::Waiting) return;
+    if (answer.kind == cosim::kSharedNotice) {
+        shared_ = true;
+        return;
+    }
+    if (stopping_ && answer.kind == I2cPhaseKind::Acknowledge) {
+        step_ = Step::Finish;
+        next_ = now;
+        return;
+    }
+    if (answer.kind == I2cPhaseKind::BusLost) return fail(EAGAIN, now, false);
     const I2cMessage& message = queue_.front().messages[message_];
     switch (answer.kind) {
     case I2cPhaseKind::Acknowledge:
@@ -161,9 +176,6 @@ void I2cAdapter::deliver(const I2cPhase& answer, Time now) {
         }
         ++byte_;
         after_byte(now);
-        break;
-    case I2cPhaseKind::BusLost:
-        fail(EAGAIN, now, false);
         break;
     default:
         break;

@@ -66,7 +66,7 @@ class I2cAdapter {
     cosim::Time next_completion() const;
     /// Whether this answer would end a transfer at once.
     bool ends_with(const cosim::I2cPhase& answer) const {
-        return step_ == Step::Waiting && answer.kind == cosim::I2cPhaseKind::BusLost;
+        return step_ == Step::Waiting && (answer.kind == cosim::I2cPhaseKind::BusLost || stopping_);
     }
     std::vector<I2cResult> take_results();
 
@@ -93,6 +93,8 @@ class I2cAdapter {
     std::size_t message_ = 0;
     std::size_t byte_ = 0;
     bool addressed_ = false;
+    bool shared_ = false;    // another master sends the same (cosim/i2c/i2c_shared.h) ...
+    bool stopping_ = false;  // ... and our STOP waits for it
     int address_bytes_ = 0;  // acknowledged, of a ten-bit address
     std::size_t length_ = 0;
     I2cResult result_;
