@@ -45,6 +45,17 @@ endfunction()
 # Tests spend their time in the libraries; compiled with less effort they are built a fifth faster.
 set(PUCKLOOP_TEST_OPTIONS $<$<CONFIG:RelWithDebInfo>:-O1>)
 
+# Copying debug information into some 170 executables was most of their linking: theirs have the names of functions alone,
+# and gold, which comes with Debian's binutils, puts them together. `debug` has all of it.
+include(CheckLinkerFlag)
+check_linker_flag(CXX -fuse-ld=gold PUCKLOOP_HAS_GOLD)
+function(puckloop_quick_link name)
+  target_link_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-Wl,--strip-debug>)
+  if(PUCKLOOP_HAS_GOLD)
+    target_link_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-fuse-ld=gold>)
+  endif()
+endfunction()
+
 # puckloop_test(NAME SOURCES a_test.cpp [LINK libraries...] [LABELS ...] [ALONE])
 # One executable an area; every Catch2 case becomes a CTest case carrying the labels. ALONE: no other test runs beside.
 function(puckloop_test name)
@@ -53,6 +64,7 @@ function(puckloop_test name)
   target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
   target_compile_options(${name} PRIVATE ${PUCKLOOP_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM puckloop_test_precompiled)
+  puckloop_quick_link(${name})
   # A test that lacks what it needs (real images, a tool) prints "skipped: reason" or "reason: skipped", and CTest counts it
   # so. The bare word is not enough: it occurs in names of tests and in results, and would hide their failures.
   set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: |: +skipped|:. +skipped")
