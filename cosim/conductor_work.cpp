@@ -17,7 +17,7 @@ constexpr double kWorthWaking = 15000.0;  // ns
 // The conductor works at least so many times as long as it planned while there is something to do.
 constexpr int kWorkByPlanning = 4;
 // Looks at several programs before one of them is waited for; some 20 us.
-constexpr int kLooks = 100;
+constexpr int kLooksAtSeveral = 100;
 // How long to sleep where --realtime lets nobody go on.
 constexpr std::chrono::microseconds kPaceSleep{500};
 }  // namespace
@@ -84,7 +84,7 @@ void Conductor::State::await_work() {
     if (workers_->do_one()) return;
     if (workers_->under_way() == 0) {
         // Others are not seen while one is waited for, which saves nothing where they answer at once.
-        for (int looks = suspended_.size() > 1 ? kLooks : 0; looks > 0 && done_.empty(); --looks)
+        for (int looks = suspended_.size() > 1 ? kLooksAtSeveral : 0; looks > 0 && done_.empty(); --looks)
             resume(false);
         if (done_.empty()) resume(true);
         return;

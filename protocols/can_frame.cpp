@@ -9,10 +9,8 @@ namespace {
 
 constexpr int kStandardBits = 11;
 constexpr int kExtendedBits = 18;
-constexpr int kCrcBits = 15;
 constexpr std::uint16_t kPolynomial = 0x4599;
 constexpr std::uint16_t kCrcMask = 0x7FFF;
-constexpr int kMostAlike = 5;  // after so many equal bits one of the other kind is stuffed
 // Bits up to RTR, without stuff bits: start of frame, identifier (SRR and IDE within), RTR.
 constexpr int kStandardArbitration = 1 + kStandardBits + 1;
 constexpr int kExtendedArbitration = 1 + kStandardBits + 2 + kExtendedBits + 1;

@@ -26,6 +26,8 @@ struct CanFrame {
 };
 
 inline constexpr bool kRecessive = true, kDominant = false;
+inline constexpr int kCrcBits = 15;
+inline constexpr int kMostAlike = 5;  ///< after so many equal bits one of the other kind is stuffed
 /// Bits behind the check sequence, none of them stuffed: CRC delimiter, acknowledge slot and delimiter, end
 /// of frame.
 inline constexpr int kCanTail = 1 + 2 + 7;

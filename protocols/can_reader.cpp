@@ -7,8 +7,6 @@ namespace puckloop::protocols {
 
 namespace {
 
-constexpr int kMostAlike = 5;
-constexpr int kCrcBits = 15;
 constexpr int kIde = 13;  // bits counted without stuff bits, the start of frame as 0
 constexpr int kShortestHead = 19;
 constexpr int kCrcDelimiter = 1, kAcknowledgeSlot = 2, kAcknowledgeDelimiter = 3;  // counted in the tail

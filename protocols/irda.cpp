@@ -13,7 +13,7 @@ using cosim::UartFrame;
 
 namespace {
 
-constexpr Time kLate = 7, kSixteenths = 16;  ///< from a bit to its pulse
+constexpr Time kLate = 7, kBitSixteenths = 16;  ///< from a bit to its pulse
 
 /// Rates so close that ten bits decode alike.
 bool same_rate(Time a, Time b) {
@@ -28,7 +28,7 @@ std::vector<UartFrame> IrdaDecoder::add(const UartFrame& frame, Time bit) {
     if (is_infrared(frame) && frame.line == 0 && same_rate(frame.bit_period, bit)) {
         UartFrame decoded = frame;
         decoded.glitch_width = 0;
-        decoded.start += frame.bit_period * kLate / kSixteenths;
+        decoded.start += frame.bit_period * kLate / kBitSixteenths;
         low_until_ = std::min(low_until_, decoded.start);
         return {decoded};
     }

@@ -16,4 +16,11 @@ void use_all_cores();
 /// else: a conducted program must find the same cores whatever the run did with its own processes.
 void use_all_cores_in_child();
 
+/// Between two looks at what another core writes: leaves the core's other thread more of it.
+inline void relax_core() {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+}
+
 }  // namespace puckloop::cosim

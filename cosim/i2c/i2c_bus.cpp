@@ -1,12 +1,13 @@
 #include "cosim/i2c/i2c_bus.h"
 
+#include "cosim/i2c/i2c_figures.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace puckloop::cosim {
 
 namespace {
-constexpr Time kClocksOfByte = 9;
 
 std::uint8_t seven_bits(std::uint8_t address_byte) {
     return static_cast<std::uint8_t>(address_byte >> 1);

@@ -1,6 +1,7 @@
 // The devices' side of the I2C bus: who is addressed, what several answers become on the wires, a stuck bus.
 
 #include "cosim/i2c/i2c_bus.h"
+#include "cosim/i2c/i2c_figures.h"
 #include "cosim/i2c/i2c_shared.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 namespace puckloop::cosim {
 
 namespace {
-constexpr std::uint8_t kReadBit = 1;
 constexpr Time kRecoveryClocks = 10;  // nine for the device, one for the STOP
 constexpr std::uint8_t kFirstBit = 0x80;
 constexpr std::uint8_t kReleased = 0xFF;

@@ -2,6 +2,7 @@
 
 #include "base/times_text.h"
 #include "cosim/i2c/i2c_bus.h"
+#include "cosim/i2c/i2c_figures.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,9 +13,6 @@ namespace {
 // An answer that has been awaited for so long at the end of a run is a bus that hangs.
 constexpr Time kHangs = 100 * kMillisecond;
 
-double microseconds(Time time) {
-    return static_cast<double>(time) / static_cast<double>(kMicrosecond);
-}
 }  // namespace
 
 std::string I2cBusNode::device_list() const {

@@ -11,22 +11,22 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr std::array<std::string_view, 13> kNames{"nack",
-                                                  "sda",
-                                                  "scl",
-                                                  "stretch",
-                                                  "lose_arbitration",
-                                                  "flip",
-                                                  "start",
-                                                  "stop",
-                                                  "incomplete_address_phase",
-                                                  "incomplete_write_byte",
-                                                  "slave_reset",
-                                                  "clash",
-                                                  "slow_rise"};
+constexpr std::array<std::string_view, 13> kI2cFaultNames{"nack",
+                                                          "sda",
+                                                          "scl",
+                                                          "stretch",
+                                                          "lose_arbitration",
+                                                          "flip",
+                                                          "start",
+                                                          "stop",
+                                                          "incomplete_address_phase",
+                                                          "incomplete_write_byte",
+                                                          "slave_reset",
+                                                          "clash",
+                                                          "slow_rise"};
 constexpr std::array<std::string_view, 4> kBytes{"any", "address", "write", "read"};
 
-constexpr std::uint8_t kHighestAddress = 0x77;
+constexpr std::uint8_t kHighestSlaveAddress = 0x77;
 
 template <class T>
 std::optional<T> whole(const FaultSpec& spec, std::string_view key) {
@@ -51,7 +51,7 @@ void check(const I2cFault& fault, const FaultSpec& spec) {
         throw InputError("", fmt::format("{} fault on {}", spec.kind, spec.link), what, expected);
     };
     const I2cWhere& where = fault.where;
-    if (where.address.value_or(0) > kHighestAddress)
+    if (where.address.value_or(0) > kHighestSlaveAddress)
         refuse("a reserved address", "a 7-bit address up to 0x77");
     const bool address_byte = where.bytes == I2cBytes::Address || where.position == 0u;
     if ((fault.kind == I2cFaultKind::Start || fault.kind == I2cFaultKind::Stop) && address_byte)
@@ -67,13 +67,13 @@ void check(const I2cFault& fault, const FaultSpec& spec) {
 }  // namespace
 
 std::string_view i2c_fault_name(I2cFaultKind kind) {
-    return kNames.at(static_cast<std::size_t>(kind));
+    return kI2cFaultNames.at(static_cast<std::size_t>(kind));
 }
 
 std::optional<I2cFaultKind> i2c_fault_of_name(std::string_view name) {
-    const auto* found = std::find(kNames.begin(), kNames.end(), name);
-    if (found == kNames.end()) return std::nullopt;
-    return static_cast<I2cFaultKind>(found - kNames.begin());
+    const auto* found = std::find(kI2cFaultNames.begin(), kI2cFaultNames.end(), name);
+    if (found == kI2cFaultNames.end()) return std::nullopt;
+    return static_cast<I2cFaultKind>(found - kI2cFaultNames.begin());
 }
 
 I2cFault read_i2c_fault(const FaultSpec& spec) {

@@ -1,6 +1,7 @@
 #include "cosim/i2c/i2c_faults.h"
 
 #include "base/error.h"
+#include "cosim/i2c/i2c_figures.h"
 #include "cosim/trace/trace_row.h"
 
 #include <fmt/format.h>
@@ -12,9 +13,7 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr Time kClocksOfByte = 9;
 constexpr int kBits = 8;
-constexpr std::uint8_t kReadBit = 1;
 
 /// The bits behind bit `k` on the wire are 1: nobody drives them any more.
 std::uint8_t given_up_at(std::uint8_t byte, int k) {

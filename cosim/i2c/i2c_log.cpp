@@ -1,5 +1,7 @@
 #include "cosim/i2c/i2c_log.h"
 
+#include "cosim/i2c/i2c_figures.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,11 +9,6 @@
 namespace puckloop::cosim {
 
 namespace {
-constexpr std::uint8_t kReadBit = 1;
-
-double microseconds(Time time) {
-    return static_cast<double>(time) / static_cast<double>(kMicrosecond);
-}
 
 std::string so_far(std::uint64_t count) {
     return count == 1 ? std::string() : fmt::format(" ({} times so far)", count);

@@ -27,12 +27,6 @@ constexpr int kChanges = 1000;
 // After so many looks in vain in a row the pauses without looking grow no further.
 constexpr std::uint32_t kLongestPause = 10;
 
-void relax_core() {
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#endif
-}
-
 /// False when a wait did not begin because the word had changed.
 bool futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value, const timespec* limit) {
     return syscall(SYS_futex, &word, operation, value, limit, nullptr, 0) >= 0 || errno != EAGAIN;

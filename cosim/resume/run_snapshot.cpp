@@ -12,8 +12,9 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr SealedKind kKind{"puckloop snapshot of a run\n", kSnapshotFormat,        "snapshot", "snapshot",
-                           "a file written by --save",     std::uintmax_t{4} << 30};
+constexpr SealedKind kSnapshotKind{
+    "puckloop snapshot of a run\n", kSnapshotFormat,        "snapshot", "snapshot",
+    "a file written by --save",     std::uintmax_t{4} << 30};
 
 /// Longest part of a build's id that is shown.
 constexpr std::size_t kShown = 12;
@@ -75,11 +76,11 @@ std::vector<std::uint8_t> encode(const RunSnapshot& snapshot) {
     std::vector<std::uint8_t> content;
     StateWriter writer(content);
     state(writer, const_cast<RunSnapshot&>(snapshot));  // one list for both directions; this one only reads
-    return seal(kKind, content);
+    return seal(kSnapshotKind, content);
 }
 
 RunSnapshot decode_snapshot(std::span<const std::uint8_t> bytes, const std::string& name) {
-    const auto content = unseal(kKind, bytes, name);
+    const auto content = unseal(kSnapshotKind, bytes, name);
     try {
         StateReader reader(content);
         RunSnapshot snapshot;
@@ -87,14 +88,14 @@ RunSnapshot decode_snapshot(std::span<const std::uint8_t> bytes, const std::stri
         reader.end();
         return snapshot;
     } catch (const StateError& error) {
-        throw InputError(name, "", error.what(), std::string(kKind.expected) + " of this build");
+        throw InputError(name, "", error.what(), std::string(kSnapshotKind.expected) + " of this build");
     } catch (const std::bad_alloc&) {
-        throw InputError(name, "", "needs more memory than there is", kKind.expected);
+        throw InputError(name, "", "needs more memory than there is", kSnapshotKind.expected);
     }
 }
 
 RunSnapshot read_snapshot(const std::filesystem::path& path) {
-    return decode_snapshot(read_sealed(kKind, path), path.string());
+    return decode_snapshot(read_sealed(kSnapshotKind, path), path.string());
 }
 
 void write_snapshot(const std::filesystem::path& path, const RunSnapshot& snapshot) {

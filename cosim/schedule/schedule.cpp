@@ -9,8 +9,8 @@ namespace {
 constexpr Time kStretchDivisor = 2;
 // To run ahead at least and at most: what is wrong is executed again from the mark on, so that a surprise
 // every few milliseconds (a program that polls a board) costs a stretch each.
-constexpr Time kShortest = 40 * kMicrosecond;
-constexpr Time kLongest = kMillisecond;
+constexpr Time kShortestAhead = 40 * kMicrosecond;
+constexpr Time kLongestAhead = kMillisecond;
 constexpr Time kTogether = 250 * kMicrosecond;
 // Where so much is sure anyway, nothing is to be won by running ahead.
 constexpr Time kLongEnough = 200 * kMicrosecond;
@@ -23,7 +23,7 @@ constexpr Time kTurns = 400 * kMicrosecond;
 constexpr int kLongStreak = 16;
 }  // namespace
 
-Schedule::Stretch::Stretch() : length(kLongest) {}
+Schedule::Stretch::Stretch() : length(kLongestAhead) {}
 
 void Schedule::surprised(std::size_t from, std::size_t to) {
     if (to >= stretches_.size()) return;
@@ -174,10 +174,10 @@ void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLim
         if (!goes_[n]) continue;
         chosen_.push_back(n);
         if (nodes[n].surprise < nodes[n].ahead) {
-            stretch.length = kShortest;
+            stretch.length = kShortestAhead;
             continue;
         }
-        stretch.length = std::clamp(stretch.length + stretch.length / kGrowth, kShortest, kLongest);
+        stretch.length = std::clamp(stretch.length + stretch.length / kGrowth, kShortestAhead, kLongestAhead);
         if (++stretch.streak >= kLongStreak) stretch.waits_for = kNobody;
     }
 }
@@ -192,7 +192,7 @@ bool Schedule::follow(std::size_t n, const std::vector<NodeTimes>& nodes) {
     if (reach <= node.surprise) return false;
     target_[n] = node.granted;
     ahead_[n] = reach;
-    stretch.length = kShortest;
+    stretch.length = kShortestAhead;
     return true;
 }
 
@@ -240,7 +240,7 @@ void Schedule::choose_any(const std::vector<NodeTimes>& nodes) {
             target_[n] = std::max(node.granted, std::min(bounds_.limit(n), ceiling_));
             ahead_[n] = back ? target_[n] : std::max(target_[n], node.ahead);
             if (back ? node.ahead == node.granted : target_[n] == node.granted) continue;
-            stretches_[n].length = back ? 0 : kShortest;
+            stretches_[n].length = back ? 0 : kShortestAhead;
             chosen_.push_back(n);
         }
         if (!chosen_.empty()) return;

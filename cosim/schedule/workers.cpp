@@ -1,5 +1,6 @@
 #include "cosim/schedule/workers.h"
 
+#include "cosim/core/cores.h"
 #include "cosim/core/process_name.h"
 
 #include <algorithm>
@@ -15,17 +16,11 @@ namespace {
 // Looks before a helper sleeps; some 60 us: to wake it costs the caller 10 us where its core has gone to
 // rest, and it begins 20 to 40 us later. Soon it gives way to whoever else is ready, such as a program of the
 // run.
-constexpr int kLooks = 2000;
+constexpr int kLooksBeforeSleep = 2000;
 constexpr int kLooksBeforeYield = 200;
 constexpr int kLooksBetweenYields = 32;
 constexpr auto kPutAside = std::chrono::microseconds(500);
 constexpr int kTurnsAlone = 400;
-
-void relax_core() {
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#endif
-}
 
 }  // namespace
 
@@ -111,7 +106,7 @@ void Workers::help(std::atomic<int>& asleep) {
     while (!ending_.load(std::memory_order_acquire)) {
         if (do_one()) {
             looks = 0;
-        } else if (++looks < kLooks) {
+        } else if (++looks < kLooksBeforeSleep) {
             relax_core();
             if (looks > kLooksBeforeYield && looks % kLooksBetweenYields == 0) std::this_thread::yield();
         } else {

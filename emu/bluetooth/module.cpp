@@ -11,7 +11,6 @@ using protocols::LmxPacket;
 
 namespace {
 
-constexpr std::size_t kMostPayload = 330;  // of an indication of data
 constexpr Time kSlot = 625 * cosim::kMicrosecond;
 // ACL errors in indications 50 and 51: page timeout, connection timeout, ended there, ended here.
 constexpr std::uint8_t kPageTimeout = 0x04, kConnectionTimeout = 0x08, kEndedThere = 0x13, kEndedHere = 0x16;

@@ -29,8 +29,9 @@
 
 namespace puckloop::bluetooth {
 
-inline constexpr std::uint8_t kOk = 0, kTimeout = 4;  ///< of a confirm
-inline constexpr std::size_t kMostLinks = 3;          ///< active at once, data sheet 1
+inline constexpr std::uint8_t kOk = 0, kBadCount = 1, kTimeout = 4, kNoConnection = 0x1F;  ///< of a confirm
+inline constexpr std::size_t kMostPayload = 330;  ///< of a packet of data, bytes
+inline constexpr std::size_t kMostLinks = 3;      ///< active at once, data sheet 1
 
 struct ModuleOptions {
     std::string name = "robot0";

@@ -11,9 +11,8 @@ using cosim::Time;
 
 namespace {
 
-constexpr std::uint8_t kBadCount = 0x01, kBadState = 0x13, kLimit = 0x1B, kNoConnection = 0x1F,
-                       kBadPort = 0x20, kBusy = 0x22, kSeveral = 0x23, kNotStored = 0x25;
-constexpr std::size_t kMostPayload = 330;
+constexpr std::uint8_t kBadState = 0x13, kLimit = 0x1B, kBadPort = 0x20, kBusy = 0x22, kSeveral = 0x23,
+                       kNotStored = 0x25;
 constexpr std::uint8_t kAll = 0xFF;
 
 }  // namespace

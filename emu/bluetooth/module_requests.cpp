@@ -13,10 +13,10 @@ using cosim::Time;
 namespace {
 
 // Errors of confirms, as protocols::lmx_error_name() names them.
-constexpr std::uint8_t kBadCount = 0x01, kBadDuration = 0x02, kBadMode = 0x03, kNameTooLong = 0x06,
-                       kBadDiscoverable = 0x07, kBadConnectable = 0x08, kBadSecurity = 0x09, kNoKey = 0x0A,
-                       kBadSpeed = 0x11, kUnexpected = 0x1C, kNoConnection = 0x1F, kUnspecified = 0x27,
-                       kBadPolicy = 0x2D, kPinTooLong = 0x2E, kBadParity = 0x2F, kBadStopBits = 0x30;
+constexpr std::uint8_t kBadDuration = 0x02, kBadMode = 0x03, kNameTooLong = 0x06, kBadDiscoverable = 0x07,
+                       kBadConnectable = 0x08, kBadSecurity = 0x09, kNoKey = 0x0A, kBadSpeed = 0x11,
+                       kUnexpected = 0x1C, kUnspecified = 0x27, kBadPolicy = 0x2D, kPinTooLong = 0x2E,
+                       kBadParity = 0x2F, kBadStopBits = 0x30;
 constexpr Time kInquiryUnit = 1280 * cosim::kMillisecond;
 constexpr std::uint8_t kLongestInquiry = 0x30;
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kTitle = "puckloop non-volatile memory 1";
 constexpr mode_t kMode = 0666;
-constexpr std::size_t kShownOfHash = 12;
+constexpr std::size_t kShownOfStateHash = 12;
 constexpr std::string_view kAsWritten =
     "the file as a run left it, or none: then the board begins with its image";
 
@@ -64,8 +64,8 @@ NvmFile::NvmFile(std::string path, std::string_view chip, const image::Image& be
         if (of_image != image_)
             throw InputError(path_, "line 3",
                              fmt::format("began with another image than {} ({}..., not {}...)",
-                                         begins_with.file, of_image.substr(0, kShownOfHash),
-                                         image_.substr(0, kShownOfHash)),
+                                         begins_with.file, of_image.substr(0, kShownOfStateHash),
+                                         image_.substr(0, kShownOfStateHash)),
                              "that image; or remove the file, and the board begins with this one");
         contents_ = std::string(rest);
     } catch (...) {

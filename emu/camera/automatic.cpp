@@ -7,7 +7,7 @@ namespace puckloop::camera {
 
 namespace {
 
-constexpr double kFullScale = 255.0;
+constexpr double kBrightestLevel = 255.0;
 constexpr double kWhiteSpeed = 1.0 / 8;
 constexpr double kFastest = 4.0;  // of what is missing, in one frame
 constexpr std::uint64_t kFewestGrey = 16;
@@ -34,7 +34,8 @@ double SeenLight::brightness(const std::array<double, 3>& gain) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < levels[c].size(); ++i)
-            sum += kShares[c] * levels[c][i] * std::min(static_cast<double>(i) / kFullScale * gain[c], 1.0);
+            sum +=
+                kShares[c] * levels[c][i] * std::min(static_cast<double>(i) / kBrightestLevel * gain[c], 1.0);
     return sum / static_cast<double>(pixels);
 }
 

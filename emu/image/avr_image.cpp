@@ -34,7 +34,7 @@ std::string noted_chip(const ElfFile& elf) {
     return {};
 }
 
-Symbol symbol_of(const Elf32_Shdr* section, std::uint32_t value) {
+Symbol avr_symbol_of(const Elf32_Shdr* section, std::uint32_t value) {
     if (!section) return {value, Space::Absolute};
     if ((section->sh_flags & SHF_EXECINSTR) != 0) return {value, Space::Program};
     return {value >= kRam && value < kEeprom ? value - kRam : value, Space::Data};
@@ -65,7 +65,7 @@ void read_avr_elf(std::string_view bytes, AvrImage& image, const AvrPart& part, 
         else if (address < kSignature)
             throw InputError(image.file, place, "holds bytes where no memory can be programmed");
     }
-    elf.read_symbols(image.symbols, &symbol_of);
+    elf.read_symbols(image.symbols, &avr_symbol_of);
     image.lines = read_lines(elf);
 }
 

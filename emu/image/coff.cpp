@@ -14,13 +14,9 @@ namespace {
 constexpr std::uint16_t kMagic30 = 0x1236;
 constexpr std::uint64_t kFileHeaderSize = 20;
 constexpr std::uint64_t kSectionHeaderSize = 40;
-constexpr std::uint64_t kSymbolSize = 18;
 constexpr std::uint64_t kRelocationSize = 10;
 constexpr std::uint16_t kFlagExecutable = 0x0002;
 constexpr std::uint32_t kSectionText = 0x0020;
-constexpr std::uint32_t kEepromStart = 0x7FF000;
-constexpr std::uint8_t kClassExternal = 2;
-constexpr std::uint8_t kClassStatic = 3;
 constexpr std::uint8_t kClassLabel = 6;
 constexpr std::int16_t kSectionAbsolute = -1;
 
@@ -54,8 +50,8 @@ class CoffReader {
             reader_.fail(18, fmt::format("flags 0x{:04X} say an object file", flags),
                          "a linked, executable image");
         symbol_table_ = symbol_table;
-        reader_.slice(symbol_table, symbol_count * kSymbolSize, "the symbol table");
-        string_table_ = symbol_table + symbol_count * kSymbolSize;
+        reader_.slice(symbol_table, symbol_count * kCoffSymbolSize, "the symbol table");
+        string_table_ = symbol_table + symbol_count * kCoffSymbolSize;
         string_end_ = string_table_;
         if (symbol_count > 0 && string_table_ + 4 <= reader_.size()) {
             const std::uint32_t length = reader_.u32(string_table_, "the string table");
@@ -113,7 +109,7 @@ class CoffReader {
 
     void read_symbols(std::uint32_t count) {
         for (std::uint32_t i = 0; i < count;) {
-            const std::uint64_t at = symbol_table_ + i * kSymbolSize;
+            const std::uint64_t at = symbol_table_ + i * kCoffSymbolSize;
             const std::uint32_t value = reader_.u32(at + 8, "a symbol");
             const auto section = static_cast<std::int16_t>(reader_.u16(at + 12, "a symbol"));
             const std::uint8_t storage = reader_.u8(at + 16, "a symbol");

@@ -8,9 +8,13 @@
 #include "emu/image/image.h"
 #include "emu/image/line_table.h"
 
+#include <cstdint>
 #include <string_view>
 
 namespace puckloop::image {
+
+inline constexpr std::uint64_t kCoffSymbolSize = 18;
+inline constexpr std::uint8_t kClassExternal = 2, kClassStatic = 3;  ///< of a symbol's storage
 
 bool is_coff(std::string_view bytes);
 /// Adds words, symbols and the chip. Throws InputError naming the offset.

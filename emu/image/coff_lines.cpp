@@ -11,8 +11,8 @@ namespace puckloop::image {
 
 namespace {
 
-constexpr std::uint64_t kSymbolSize = 18, kLineSize = 8;
-constexpr std::uint8_t kClassFile = 103, kClassExternal = 2, kClassStatic = 3;
+constexpr std::uint64_t kLineSize = 8;
+constexpr std::uint8_t kClassFile = 103;
 constexpr std::uint16_t kFunctionType = 0x20, kDerivedType = 0x30;
 
 class Reader {
@@ -21,20 +21,20 @@ class Reader {
         : reader_(bytes, file),
           symbols_(reader_.u32(8, "the file header")),
           count_(reader_.u32(12, "the file header")) {
-        reader_.slice(symbols_, count_ * kSymbolSize, "the symbol table");
+        reader_.slice(symbols_, count_ * kCoffSymbolSize, "the symbol table");
     }
 
     void read(LineTable& lines) {
         std::string_view source;
         for (std::uint64_t i = 0; i < count_;) {
-            const std::uint64_t at = symbols_ + i * kSymbolSize;
+            const std::uint64_t at = symbols_ + i * kCoffSymbolSize;
             const std::uint16_t type = reader_.u16(at + 14, "a symbol");
             const std::uint8_t storage = reader_.u8(at + 16, "a symbol");
             const std::uint8_t auxiliaries = reader_.u8(at + 17, "a symbol");
             i += 1u + auxiliaries;
             if (auxiliaries == 0 || i > count_) continue;
             if (storage == kClassFile) {
-                const std::string_view name = file_name(at + kSymbolSize);
+                const std::string_view name = file_name(at + kCoffSymbolSize);
                 if (!name.ends_with(".h")) source = name;
             } else if ((storage == kClassExternal || storage == kClassStatic) &&
                        (type & kDerivedType) == kFunctionType) {
@@ -50,7 +50,7 @@ class Reader {
             name = reader_.slice(at, 14, "a file's name");
             name = name.substr(0, name.find('\0'));
         } else {
-            const std::uint64_t strings = symbols_ + count_ * kSymbolSize;
+            const std::uint64_t strings = symbols_ + count_ * kCoffSymbolSize;
             name =
                 reader_.text(strings + reader_.u32(at + 4, "a file's name"), reader_.size(), "a file's name");
         }
@@ -59,8 +59,8 @@ class Reader {
 
     void read_function(std::uint64_t at, std::string_view source, LineTable& lines) const {
         const std::uint32_t begin = reader_.u32(at + 8, "a function");
-        const std::uint32_t size = reader_.u32(at + kSymbolSize + 4, "a function");
-        const std::uint64_t first = reader_.u32(at + kSymbolSize + 8, "a function");
+        const std::uint32_t size = reader_.u32(at + kCoffSymbolSize + 4, "a function");
+        const std::uint64_t first = reader_.u32(at + kCoffSymbolSize + 8, "a function");
         if (size == 0 || first == 0 || source.empty()) return;
         lines.add(begin + size, "", 0);
         for (std::uint64_t entry = first + kLineSize;; entry += kLineSize) {

@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::uint64_t kBytesPerWord = 4;
 constexpr std::uint64_t kByteAddressEnd = 0x2000000;  // 2 * 2^24
-constexpr std::uint32_t kEepromStart = 0x7FF000;
 constexpr std::uint32_t kEepromEnd = 0x800000;
 constexpr std::uint32_t kConfigStart = 0xF80000;
 constexpr std::uint32_t kConfigEnd = 0xF90000;

@@ -5,7 +5,12 @@
 #include "emu/image/byte_segments.h"
 #include "emu/image/image.h"
 
+#include <cstdint>
+
 namespace puckloop::image {
+
+/// Program address of the data EEPROM's first word.
+inline constexpr std::uint32_t kEepromStart = 0x7FF000;
 
 /// Sorts `segments` into the image's program, eeprom, config and other words. Throws InputError for a word
 /// cut short, a phantom byte that is not zero, or an address beyond 24 bits. Byte addresses in messages are

@@ -7,8 +7,6 @@ namespace puckloop::image {
 
 namespace {
 
-constexpr std::uint32_t kEepromStart = 0x7FF000;
-
 /// Where a section is placed: its segment may lie elsewhere than it is addressed (.const through PSV).
 std::uint32_t load_address(const ElfFile& elf, const Elf32_Shdr& header) {
     for (const Elf32_Phdr& segment : elf.segments())
@@ -23,7 +21,7 @@ bool is_program(const Elf32_Shdr& header) {
            ((header.sh_flags & SHF_WRITE) == 0 || header.sh_addr >= kEepromStart);
 }
 
-Symbol symbol_of(const Elf32_Shdr* section, std::uint32_t value) {
+Symbol dspic_symbol_of(const Elf32_Shdr* section, std::uint32_t value) {
     if (!section) return {value, Space::Absolute};
     return {value, (section->sh_flags & SHF_EXECINSTR) != 0 ? Space::Program : Space::Data};
 }
@@ -40,7 +38,7 @@ void read_elf(std::string_view bytes, Image& image) {
                      "section " + elf.section_name(header));
     }
     add_words(image, segments.joined());
-    elf.read_symbols(image.symbols, &symbol_of, [&image](std::string_view name) {
+    elf.read_symbols(image.symbols, &dspic_symbol_of, [&image](std::string_view name) {
         if (image.chip.empty()) image.chip = chip_from_symbol(name);
     });
 }

@@ -20,9 +20,10 @@ std::string_view without_folder(std::string_view path) {
 }
 
 /// The bytes of one section.
-class Section {
+class DwarfSection {
   public:
-    explicit Section(std::string_view bytes) : reader_(bytes, "debug information"), end_(reader_.size()) {}
+    explicit DwarfSection(std::string_view bytes)
+        : reader_(bytes, "debug information"), end_(reader_.size()) {}
     std::uint64_t at = 0;
     std::uint64_t end() const { return end_; }
     void end_at(std::uint64_t end) { end_ = std::min(end, reader_.size()); }
@@ -82,7 +83,7 @@ std::string without_padding(std::string_view bytes) {
 }
 
 /// Source: "The stabs debug format", sections "Line Numbers" and "Stab Section Basics".
-void read_stabs(Section stabs, const Section& names, LineTable& lines) {
+void read_stabs(DwarfSection stabs, const DwarfSection& names, LineTable& lines) {
     enum : std::uint8_t { kUnit = 0x00, kFunction = 0x24, kLine = 0x44, kSource = 0x64, kIncluded = 0x84 };
     std::uint64_t strings = 0, next_strings = 0;
     std::uint32_t function = 0;
@@ -123,10 +124,10 @@ void read_stabs(Section stabs, const Section& names, LineTable& lines) {
 }
 
 /// One unit's program. Source: DWARF Debugging Information Format, version 2.0.0, section 6.2.
-void run_line_program(Section& s, LineTable& lines) {
+void run_line_program(DwarfSection& s, LineTable& lines) {
     const std::uint64_t start = s.at;
     const std::uint64_t end = start + 4 + s.u32();
-    Section unit = s;
+    DwarfSection unit = s;
     unit.end_at(end);
     s.at = std::min(end, s.end());
     const std::uint16_t version = unit.u16();
@@ -284,13 +285,13 @@ LineTable read_lines(const ElfFile& elf) {
     const auto stab = find(".stab"), names = find(".stabstr"), dwarf = find(".debug_line");
     try {
         if (stab != sections.end() && names != sections.end())
-            read_stabs(Section(elf.data(*stab)), Section(elf.data(*names)), lines);
+            read_stabs(DwarfSection(elf.data(*stab)), DwarfSection(elf.data(*names)), lines);
     } catch (const InputError&) {
     }
     try {
         if (dwarf != sections.end()) {
             const std::string bytes = without_padding(elf.data(*dwarf));
-            for (Section all(bytes); all.at + 4 < all.end();)
+            for (DwarfSection all(bytes); all.at + 4 < all.end();)
                 run_line_program(all, lines);
         }
     } catch (const InputError&) {

@@ -32,7 +32,7 @@ constexpr double kLineGainStep = 10.0;
 
 constexpr unsigned kRead = 1u << 13, kOtherChip = 3u << 14;
 constexpr int kWordBits = 16;
-constexpr double kFullScale = 32768.0;
+constexpr double kSoundFullScale = 32768.0;
 constexpr double kPllTolerance = 0.02;
 
 double from_db(double db) {
@@ -95,17 +95,17 @@ void Si3000::convert(std::uint16_t word) {
     const auto sample = static_cast<std::int16_t>(word & 0xFFFEu);
     const double sides = (registers_[kDacVolume] & kSpeakersActive) == kSpeakersActive ? 1.0 : 0.5;
     const double attenuation = from_db(-kAttenuationStep * (registers_[kAttenuation] & 3u));
-    speaker_ =
-        std::clamp(sample / kFullScale * volume(registers_[kDacVolume]), -1.0, 1.0) * attenuation * sides;
+    speaker_ = std::clamp(sample / kSoundFullScale * volume(registers_[kDacVolume]), -1.0, 1.0) *
+               attenuation * sides;
 }
 
 /// The line input as a sample.
 std::uint16_t Si3000::listen(double line_in) const {
     if (!in_step() || (registers_[kControl1] & kChipPowerDown) || (registers_[kRxGain] & kLineMute)) return 0;
     const double preamplifier = from_db(kLineGainStep * std::min(registers_[kRxGain] >> 6, 2));
-    const double value = line_in * preamplifier * volume(registers_[kAdcVolume]) * kFullScale;
+    const double value = line_in * preamplifier * volume(registers_[kAdcVolume]) * kSoundFullScale;
     const auto code =
-        static_cast<std::int32_t>(std::lround(std::clamp(value, -kFullScale, kFullScale - 2.0)));
+        static_cast<std::int32_t>(std::lround(std::clamp(value, -kSoundFullScale, kSoundFullScale - 2.0)));
     return static_cast<std::uint16_t>(code) & 0xFFFEu;
 }
 

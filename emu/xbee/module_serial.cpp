@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kReceiveRoom = 255;  // FT reaches 17 bytes less
 constexpr std::size_t kFtHysteresis = 16;
 constexpr std::size_t kMostPackets = 4;
-constexpr std::uint32_t kTransparent = 0;  // AP
+constexpr std::uint32_t kTransparentMode = 0;  // AP
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void Module::byte(std::uint8_t value, Time now) {
         return;
     }
     stay_awake(now);
-    if (settings_[kAP] == kTransparent || command_mode_) {
+    if (settings_[kAP] == kTransparentMode || command_mode_) {
         if (command_mode_) return command_byte(value, now);
         if (guarded(value, now)) return;
         if (plain_.size() >= kReceiveRoom) {
@@ -109,7 +109,7 @@ void Module::packetize(Time now) {
 }
 
 bool Module::to_host(const XBeeMessage& message, Time now) {
-    if (settings_[kAP] == kTransparent) return false;
+    if (settings_[kAP] == kTransparentMode) return false;
     const bool fits = out_.put(protocols::encode_xbee(protocols::encode(message), api_mode()), now);
     ++(fits ? counts_.frames_out : counts_.dropped_out);
     return fits;

@@ -7,7 +7,7 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr double kLongest = 10.0;  // s
+constexpr double kLongestOnAir = 10.0;  // s
 
 ParameterInfo time(std::string_view key, double low, double high, double fallback) {
     return {key, Unit::Time, low, high, fallback};
@@ -51,7 +51,7 @@ std::vector<KindInfo> xbee_kinds() {
           whole("channel", kFirstChannel, kLastChannel, kFactoryChannel),
           {"dbm", Unit::Number, -100, 20, -50.0},
           {"load", Unit::Ratio, 0.001, 1, 0.5},
-          time("length", kShortestFrame, kLongest, kLongestFrame)}},
+          time("length", kShortestFrame, kLongestOnAir, kLongestFrame)}},
     };
 }
 
@@ -70,8 +70,8 @@ std::vector<KindInfo> ircom_kinds() {
         kind("corrupt", {whole("halves", 1, kLastHalf, 1), whole("position", kFirstHalf, kLastHalf)}),
         kind("flip", {whole("bits", 1, kBits, 1), whole("bit", 0, kBits - 1)}),
         kind("jitter", {{"jitter", Unit::Time, 1e-6, kHalfPeriod, {}, true}}),
-        kind("delay", {{"delay", Unit::Time, kAfterWord, kLongest, {}, true}}),
-        kind("duplicate", {time("delay", kAfterWord, kLongest, kAfterWord)}),
+        kind("delay", {{"delay", Unit::Time, kAfterWord, kLongestOnAir, {}, true}}),
+        kind("duplicate", {time("delay", kAfterWord, kLongestOnAir, kAfterWord)}),
         kind("swap", {}, "reorder"),
         kind("clash", {{"value", Unit::Byte, 0, 255}}),
     };

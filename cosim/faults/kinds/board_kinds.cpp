@@ -9,7 +9,8 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr double kLongest = 1e6, kMostArrivals = 1e9, kMostPpm = 90'000.0, kHighestAddress = 0xFFFFFF;
+constexpr double kLongestOfBoard = 1e6, kMostArrivals = 1e9, kMostPpm = 90'000.0,
+                 kHighestChipAddress = 0xFFFFFF;
 constexpr double kHighestBit = 23, kMostVolts = 10;
 // Inputs of the converters. The range-and-bearing board's peak detectors are at AN20 to AN31.
 constexpr double kChannels = 16, kRabChannels = 32;
@@ -28,7 +29,7 @@ ParameterInfo number(std::string_view key, double low, double high) {
 
 std::vector<KindInfo> of_chip(PlaceKind place) {
     const bool avr = place == PlaceKind::Tam;
-    const ParameterInfo duration{.key = "duration", .unit = Unit::Time, .low = 0, .high = kLongest};
+    const ParameterInfo duration{.key = "duration", .unit = Unit::Time, .low = 0, .high = kLongestOfBoard};
     const ParameterInfo channel{.key = "channel",
                                 .unit = Unit::Integer,
                                 .low = 0,
@@ -46,7 +47,7 @@ std::vector<KindInfo> of_chip(PlaceKind place) {
         {"flip", place, Style::Times, FaultKind::None,
          at_program({{.key = "space", .unit = Unit::Text, .choices = "ram|register|flash|eeprom"},
                      {.key = "symbol", .unit = Unit::Text},
-                     {.key = "address", .unit = Unit::Integer, .low = 0, .high = kHighestAddress},
+                     {.key = "address", .unit = Unit::Integer, .low = 0, .high = kHighestChipAddress},
                      {.key = "bit", .unit = Unit::Integer, .low = 0, .high = kHighestBit}})},
         {"clock",
          place,
@@ -61,9 +62,9 @@ std::vector<KindInfo> of_chip(PlaceKind place) {
     };
     const ParameterInfo vector{.key = "vector", .unit = Unit::Text, .required = true};
     const ParameterInfo delay{
-        .key = "delay", .unit = Unit::Time, .low = 0, .high = kLongest, .required = true};
+        .key = "delay", .unit = Unit::Time, .low = 0, .high = kLongestOfBoard, .required = true};
     const ParameterInfo jitter{
-        .key = "jitter", .unit = Unit::Time, .low = 0, .high = kLongest, .fallback = 0.0};
+        .key = "jitter", .unit = Unit::Time, .low = 0, .high = kLongestOfBoard, .fallback = 0.0};
     kinds.push_back(
         {"interrupt", place, Style::Times, FaultKind::None, at_program({vector}), "spurious_interrupt"});
     kinds.push_back({"lost_interrupt", place, Style::Each, FaultKind::None, {vector}});

@@ -7,7 +7,7 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr double kLongest = 3600.0;  // s
+constexpr double kLongestOnI2c = 3600.0;  // s
 // UM10204 table 10: a rise of 1000 ns at 100 kHz at most. A clock longer by more than this is no slow rise.
 constexpr double kSlowestRise = 1e-3;  // s
 constexpr double kHighestAddress = 0x77;
@@ -21,7 +21,7 @@ std::vector<ParameterInfo> with_where(std::vector<ParameterInfo> parameters, boo
     return parameters;
 }
 
-ParameterInfo lasting(double most = kLongest) {
+ParameterInfo lasting(double most = kLongestOnI2c) {
     return {"time", Unit::Time, 1e-9, most, {}, true};
 }
 

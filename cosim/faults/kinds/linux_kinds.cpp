@@ -6,9 +6,9 @@
 namespace puckloop::cosim {
 
 namespace {
-constexpr double kLongest = 3600.0;  // s
+constexpr double kLongestOfCall = 3600.0;  // s
 constexpr double kMostBytes = 4096;
-constexpr double kMostFactor = 1e6;
+constexpr double kMostStarving = 1e6;
 constexpr std::string_view kTtyErrors = "EAGAIN|EINTR|EIO|ENXIO|ENODEV|ENOMEM";
 constexpr std::string_view kI2cErrors =
     "EIO|EAGAIN|EBUSY|EINVAL|ENODEV|ENOMEM|ENXIO|EOPNOTSUPP|EPROTO|EREMOTEIO|ETIMEDOUT";
@@ -32,10 +32,10 @@ std::vector<KindInfo> linux_kinds() {
         kind("termios_baud", Style::Each, {{"baud", Unit::Number, 50, 4e6, {}, true}}),
         kind("i2c_error", Style::Each, {text("errno", kI2cErrors), {"address", Unit::Byte, 0, 0x77}}),
         kind("hang_up", Style::Times, {}),
-        kind("pause", Style::Times, {{"time", Unit::Time, 1e-6, kLongest, {}, true}}),
-        kind("starve", Style::Hold, {{"factor", Unit::Number, 1.0, kMostFactor, {}, true}}),
+        kind("pause", Style::Times, {{"time", Unit::Time, 1e-6, kLongestOfCall, {}, true}}),
+        kind("starve", Style::Hold, {{"factor", Unit::Number, 1.0, kMostStarving, {}, true}}),
         kind("kill", Style::Times, {text("run", "ends|goes_on")}),
-        kind("restart", Style::Times, {{"down", Unit::Time, 0.0, kLongest, 0.0}}),
+        kind("restart", Style::Times, {{"down", Unit::Time, 0.0, kLongestOfCall, 0.0}}),
     };
 }
 

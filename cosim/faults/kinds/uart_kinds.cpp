@@ -11,9 +11,9 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr double kLongest = 1e6;  // seconds
+constexpr double kLongestOfLine = 1e6;  // seconds
 // A bit slower than 1/64 or faster than 64 times the sender's is no clock error but a mistake.
-constexpr double kMostFactor = 64.0;
+constexpr double kMostRateFactor = 64.0;
 constexpr double kMostFrames = 1e6;
 constexpr double kMostBitsOfFrame = 13;  // start, 9 data, parity, 2 stop
 
@@ -92,10 +92,11 @@ std::vector<KindInfo> uart_kinds() {
         kind("stuck", Style::Hold, FaultKind::Stuck, {choice("level", "low|high")}),
         kind("invert", Style::Hold, FaultKind::Invert),
         // Timing
-        kind("delay", Style::Each, FaultKind::Delay,
-             {required("delay", Unit::Time, 0, kLongest), {"jitter", Unit::Time, 0, kLongest, 0}}),
+        kind(
+            "delay", Style::Each, FaultKind::Delay,
+            {required("delay", Unit::Time, 0, kLongestOfLine), {"jitter", Unit::Time, 0, kLongestOfLine, 0}}),
         kind("rate", Style::Each, FaultKind::Rate,
-             {required("factor", Unit::Ratio, 1 / kMostFactor, kMostFactor)}),
+             {required("factor", Unit::Ratio, 1 / kMostRateFactor, kMostRateFactor)}),
         kind("baud", Style::Each, FaultKind::Baud,
              {{"offset", Unit::Ratio, -0.9, 9, 0}, {"drift", Unit::Ratio, -1, 1, 0}}),
         kind("batch", Style::Each, FaultKind::Batch, {required("slot", Unit::Time, 1e-6, 10)}),

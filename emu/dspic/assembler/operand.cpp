@@ -47,7 +47,7 @@ bool parse_indirect(std::string_view inside, Operand& operand) {
     if (inside.empty()) return true;
     if (operand.mode != kModeIndirect) return false;
     if (inside == "++" || inside == "--") {
-        operand.mode = inside == "++" ? kModePostIncrement : kModePostDecrement;
+        operand.mode = static_cast<std::uint8_t>(inside == "++" ? kModePostIncrement : kModePostDecrement);
         return true;
     }
     operand.negative = inside[0] == '-';
