@@ -9,8 +9,8 @@
 namespace puckloop::physics {
 
 namespace {
-constexpr std::array<double, kPoseSignals> kQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
-constexpr double kFullLevel = 255.0;                                    // of the turret's colours
+constexpr std::array<double, kPoseSignals> kPoseQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
+constexpr double kFullLevel = 255.0;                                        // of the turret's colours
 
 std::array<double, CameraSignals::kLampValues> values_of(const Lamp& lamp) {
     return {lamp.x, lamp.y, lamp.height, lamp.intensity};
@@ -81,7 +81,7 @@ void CameraPort::put_poses(const WorldModel& model) {
         const auto pose = [](const auto& s) { return std::array<double, kPoseSignals>{s.x, s.y, s.heading}; };
         const auto now = robot ? pose(model.state(i)) : pose(model.object(i - signals_.robots()));
         for (std::size_t k = 0; k < kPoseSignals; ++k)
-            put(signals_.pose(i) + k, std::round(now[k] / kQuantum[k]) * kQuantum[k]);
+            put(signals_.pose(i) + k, std::round(now[k] / kPoseQuantum[k]) * kPoseQuantum[k]);
     }
 }
 

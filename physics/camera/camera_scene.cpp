@@ -25,18 +25,18 @@ constexpr double kLampRadius = 0.02;
 constexpr double kLampLevel = 20.0;
 
 /// Visible grey of walls and things: infra-red reflectivity gives no more than dark or light.
-constexpr double kBrightest = 0.85;
+constexpr double kBrightestGrey = 0.85;
 constexpr double kTopShare = 1.0;
 constexpr std::array<double, 3> kRobotSide{0.22, 0.24, 0.22};  // translucent body, dark boards behind
 constexpr std::array<double, 3> kRobotTop{0.08, 0.16, 0.08};   // printed circuit
 
-std::array<double, 3> grey(double reflectivity) {
-    const double share = kBrightest * std::min(reflectivity, 1.0);
+std::array<double, 3> grey_of(double reflectivity) {
+    const double share = kBrightestGrey * std::min(reflectivity, 1.0);
     return {share, share, share};
 }
 
 Body plain(const Shape& shape) {
-    Body body{shape, grey(shape.reflectivity), grey(shape.reflectivity)};
+    Body body{shape, grey_of(shape.reflectivity), grey_of(shape.reflectivity)};
     for (double& share : body.top)
         share *= kTopShare;
     return body;

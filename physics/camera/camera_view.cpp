@@ -9,7 +9,7 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr float kFar = 1e9F;
+constexpr float kFarDepth = 1e9F;
 constexpr double kWhiteFloor = 0.85;  // share of the light that comes back from floor_grey = 1
 constexpr double kBlackFloor = 0.04;
 constexpr std::array<float, 3> kRoom{0.45F, 0.45F,
@@ -102,7 +102,7 @@ CameraView::Colour CameraView::floor_at(double x, double y) const {
     return {share, share, share};
 }
 
-/// The distance seen from above at which a ray of that slope ends on something; kFar: on the floor or
+/// The distance seen from above at which a ray of that slope ends on something; kFarDepth: on the floor or
 /// nowhere.
 float CameraView::hidden_from(const std::vector<Span>& column, float slope) const {
     const auto height =
@@ -113,7 +113,7 @@ float CameraView::hidden_from(const std::vector<Span>& column, float slope) cons
         if (z > span.height && height - slope * span.out <= span.height)
             return (height - span.height) / slope;
     }
-    return kFar;
+    return kFarDepth;
 }
 
 void CameraView::draw_pixels(const Mode& mode) {

@@ -19,8 +19,8 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kFarthest = 1000.0;  // m, as in check()
-constexpr double kLongest = 3600.0;   // s: a glide, a key held
+constexpr double kFarthestOfEvents = 1000.0;  // m, as in check()
+constexpr double kLongestOfEvent = 3600.0;    // s: a glide, a key held
 constexpr int kLastPosition = 15;
 
 struct Range {
@@ -42,9 +42,9 @@ std::string first_of(std::initializer_list<std::string> problems) {
 }
 
 /// What is known before the run: names with their kinds, and what will not move away.
-class Checker {
+class EventChecker {
   public:
-    Checker(const EventPlan& plan, const World& world) : plan_(plan), world_(world) { gather(); }
+    EventChecker(const EventPlan& plan, const World& world) : plan_(plan), world_(world) { gather(); }
 
     void run() {
         for (const Event& event : plan_.events)
@@ -234,10 +234,11 @@ std::string problem_of(const Action& action) {
     if (action.verb < Verb::Move || action.verb > Verb::Remote) return "unknown action";
     const auto& to = action.to;
     if (std::string problem =
-            first_of({to ? out_of("x", to->x, -kFarthest, kFarthest) : "",
-                      to ? out_of("y", to->y, -kFarthest, kFarthest) : "",
-                      out_of("heading", action.heading.value_or(0), -kFarthest, kFarthest),
-                      out_of("over", action.over, 0, kLongest), out_of("hold", action.hold, 0, kLongest)});
+            first_of({to ? out_of("x", to->x, -kFarthestOfEvents, kFarthestOfEvents) : "",
+                      to ? out_of("y", to->y, -kFarthestOfEvents, kFarthestOfEvents) : "",
+                      out_of("heading", action.heading.value_or(0), -kFarthestOfEvents, kFarthestOfEvents),
+                      out_of("over", action.over, 0, kLongestOfEvent),
+                      out_of("hold", action.hold, 0, kLongestOfEvent)});
         !problem.empty())
         return problem;
     switch (action.verb) {
@@ -268,7 +269,7 @@ std::string problem_of(const Action& action) {
 }
 
 void check_events(const EventPlan& plan, const World& world) {
-    Checker(plan, world).run();
+    EventChecker(plan, world).run();
 }
 
 }  // namespace puckloop::physics

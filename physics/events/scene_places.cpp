@@ -13,7 +13,7 @@ namespace puckloop::physics {
 
 namespace {
 
-using Kind = Found::Kind;
+using PlaceKind = Found::Kind;
 
 template <class Things>
 std::size_t index_of(const Things& things, std::string_view name) {
@@ -26,14 +26,16 @@ std::size_t index_of(const Things& things, std::string_view name) {
 
 Found Scene::find(std::string_view name) const {
     const World& world = model_.description_;
-    if (const auto i = index_of(world.robots, name); i < world.robots.size()) return {Kind::Robot, i};
+    if (const auto i = index_of(world.robots, name); i < world.robots.size()) return {PlaceKind::Robot, i};
     for (std::size_t i = built_in_; i < model_.fixed_.size(); ++i)
-        if (model_.fixed_names_[i] == name && model_.fixed_[i].height > 0.0) return {Kind::Fixed, i};
+        if (model_.fixed_names_[i] == name && model_.fixed_[i].height > 0.0) return {PlaceKind::Fixed, i};
     for (std::size_t i = 0; i < model_.object_names_.size(); ++i)
-        if (model_.object_names_[i] == name && model_.object_shape(i).height > 0.0) return {Kind::Object, i};
-    if (const auto i = index_of(world.lamps, name); i < world.lamps.size()) return {Kind::Lamp, i};
-    if (const auto i = index_of(world.speakers, name); i < world.speakers.size()) return {Kind::Speaker, i};
-    if (const auto i = index_of(world.patches, name); i < world.patches.size()) return {Kind::Patch, i};
+        if (model_.object_names_[i] == name && model_.object_shape(i).height > 0.0)
+            return {PlaceKind::Object, i};
+    if (const auto i = index_of(world.lamps, name); i < world.lamps.size()) return {PlaceKind::Lamp, i};
+    if (const auto i = index_of(world.speakers, name); i < world.speakers.size())
+        return {PlaceKind::Speaker, i};
+    if (const auto i = index_of(world.patches, name); i < world.patches.size()) return {PlaceKind::Patch, i};
     return {};
 }
 
@@ -44,23 +46,23 @@ std::vector<Scene::Listed> Scene::list() const {
         all.push_back({kind, name, pose_of(what), lifted});
     };
     for (std::size_t i = 0; i < world.robots.size(); ++i)
-        add("robot", world.robots[i].name, {Kind::Robot, i}, model_.robot(i).lifted());
+        add("robot", world.robots[i].name, {PlaceKind::Robot, i}, model_.robot(i).lifted());
     const auto kind_of = [](const Shape& shape) {
         return shape.kind == Shape::Kind::Box ? "box" : "cylinder";
     };
     for (std::size_t i = built_in_; i < model_.fixed_.size(); ++i)
         if (model_.fixed_[i].height > 0.0)
             add(walls_.contains(i) ? "wall" : kind_of(model_.fixed_[i]), model_.fixed_names_[i],
-                {Kind::Fixed, i});
+                {PlaceKind::Fixed, i});
     for (std::size_t i = 0; i < model_.object_names_.size(); ++i)
         if (model_.object_shape(i).height > 0.0)
-            add(kind_of(model_.object_shape(i)), model_.object_names_[i], {Kind::Object, i});
+            add(kind_of(model_.object_shape(i)), model_.object_names_[i], {PlaceKind::Object, i});
     for (std::size_t i = 0; i < world.lamps.size(); ++i)
-        add("lamp", world.lamps[i].name, {Kind::Lamp, i});
+        add("lamp", world.lamps[i].name, {PlaceKind::Lamp, i});
     for (std::size_t i = 0; i < world.speakers.size(); ++i)
-        add("speaker", world.speakers[i].name, {Kind::Speaker, i});
+        add("speaker", world.speakers[i].name, {PlaceKind::Speaker, i});
     for (std::size_t i = 0; i < world.patches.size(); ++i)
-        add("floor_patch", world.patches[i].name, {Kind::Patch, i});
+        add("floor_patch", world.patches[i].name, {PlaceKind::Patch, i});
     return all;
 }
 
@@ -81,21 +83,21 @@ Scene::Pose Scene::pose_of(Found what) const {
     const auto plain = [](const auto& thing) { return Pose{thing.x, thing.y, 0.0}; };
     const auto turned = [](const auto& thing) { return Pose{thing.x, thing.y, thing.heading}; };
     switch (what.kind) {
-    case Kind::Robot:
+    case PlaceKind::Robot:
         return turned(model_.state(what.index));
-    case Kind::Fixed: {
+    case PlaceKind::Fixed: {
         const Shape& shape = model_.fixed_[what.index];
         return {shape.x, shape.y, std::atan2(shape.sine, shape.cosine)};
     }
-    case Kind::Object:
+    case PlaceKind::Object:
         return turned(model_.object(what.index));
-    case Kind::Lamp:
+    case PlaceKind::Lamp:
         return plain(world.lamps[what.index]);
-    case Kind::Speaker:
+    case PlaceKind::Speaker:
         return plain(world.speakers[what.index]);
-    case Kind::Patch:
+    case PlaceKind::Patch:
         return turned(world.patches[what.index]);
-    case Kind::Nothing:
+    case PlaceKind::Nothing:
         break;
     }
     return {};
@@ -108,28 +110,28 @@ void Scene::place(Found what, const Pose& pose, double vx, double vy) {
         thing.y = pose.y;
     };
     switch (what.kind) {
-    case Kind::Robot:
+    case PlaceKind::Robot:
         model_.dynamics_.place_robot(what.index, pose.x, pose.y, pose.heading);
         break;
-    case Kind::Fixed:
+    case PlaceKind::Fixed:
         model_.fixed_[what.index].place(pose.x, pose.y, pose.heading);
         model_.dynamics_.place_fixed(what.index, model_.fixed_[what.index]);
         model_.fixed_by_hand_.insert(what.index);
         break;
-    case Kind::Object:
+    case PlaceKind::Object:
         model_.dynamics_.place_object(what.index, pose.x, pose.y, pose.heading, vx, vy);
         break;
-    case Kind::Lamp:
+    case PlaceKind::Lamp:
         put_at(world.lamps[what.index]);
         break;
-    case Kind::Speaker:
+    case PlaceKind::Speaker:
         put_at(world.speakers[what.index]);
         break;
-    case Kind::Patch:
+    case PlaceKind::Patch:
         put_at(world.patches[what.index]);
         world.patches[what.index].heading = pose.heading;
         break;
-    case Kind::Nothing:
+    case PlaceKind::Nothing:
         return;
     }
     scene_changed();
@@ -137,12 +139,12 @@ void Scene::place(Found what, const Pose& pose, double vx, double vy) {
 
 Shape Scene::shape_of(Found what) const {
     Shape shape;
-    if (what.kind == Kind::Robot) {
+    if (what.kind == PlaceKind::Robot) {
         const auto& body = model_.robot(what.index).body();
         shape = circle_shape(0, 0, body.radius, body.height, body.reflectivity);
-    } else if (what.kind == Kind::Fixed) {
+    } else if (what.kind == PlaceKind::Fixed) {
         return model_.fixed_[what.index];
-    } else if (what.kind == Kind::Object) {
+    } else if (what.kind == PlaceKind::Object) {
         shape = model_.object_shape(what.index);
     }
     const Pose pose = pose_of(what);
@@ -151,10 +153,11 @@ Shape Scene::shape_of(Found what) const {
 }
 
 std::string Scene::obstacle(Found what, Pose pose) const {
-    if (what.kind != Kind::Robot && what.kind != Kind::Fixed && what.kind != Kind::Object) return {};
+    if (what.kind != PlaceKind::Robot && what.kind != PlaceKind::Fixed && what.kind != PlaceKind::Object)
+        return {};
     Shape shape = shape_of(what);
     shape.place(pose.x, pose.y, pose.heading);
-    return obstacle(shape, what, what.kind == Kind::Fixed && walls_.contains(what.index));
+    return obstacle(shape, what, what.kind == PlaceKind::Fixed && walls_.contains(what.index));
 }
 
 std::string Scene::obstacle(const Shape& shape, Found itself, bool is_wall) const {
@@ -162,19 +165,20 @@ std::string Scene::obstacle(const Shape& shape, Found itself, bool is_wall) cons
         const auto tidy = [](double metres) { return std::round(metres * 1e4) / 1e4 + 0.0; };
         return fmt::format("({} m, {} m) {}", tidy(shape.x), tidy(shape.y), problem);
     };
-    const auto meets = [&](Kind kind, std::size_t index, const Shape& other) {
+    const auto meets = [&](PlaceKind kind, std::size_t index, const Shape& other) {
         return Found{kind, index} != itself && other.height > 0.0 && overlap(shape, other);
     };
     if (!inside(model_.description_.arena.corners, shape.x, shape.y)) return at("is outside the arena");
     for (std::size_t i = 0; i < model_.fixed_.size() && !is_wall; ++i)
-        if (meets(Kind::Fixed, i, model_.fixed_[i]))
+        if (meets(PlaceKind::Fixed, i, model_.fixed_[i]))
             return at(i < arena_walls_ ? "is too close to the arena's wall: it would be in it"
                                        : fmt::format("is taken by '{}'", model_.fixed_names_[i]));
     for (std::size_t i = 0; i < model_.robot_count(); ++i)
-        if (!model_.robot(i).lifted() && meets(Kind::Robot, i, shape_of({Kind::Robot, i})))
+        if (!model_.robot(i).lifted() && meets(PlaceKind::Robot, i, shape_of({PlaceKind::Robot, i})))
             return at(fmt::format("is taken by '{}'", model_.description_.robots[i].name));
     for (std::size_t i = 0; i < model_.object_names_.size(); ++i)
-        if (model_.object_shape(i).height > 0.0 && meets(Kind::Object, i, shape_of({Kind::Object, i})))
+        if (model_.object_shape(i).height > 0.0 &&
+            meets(PlaceKind::Object, i, shape_of({PlaceKind::Object, i})))
             return at(fmt::format("is taken by '{}'", model_.object_names_[i]));
     return {};
 }

@@ -13,7 +13,7 @@ namespace {
 
 using cosim::Time;
 
-constexpr Time kStep = cosim::kMillisecond;
+constexpr Time kTimelineStep = cosim::kMillisecond;
 constexpr Time kFirstSignal = cosim::kMicrosecond;  // boards begin to run before the world is asked
 constexpr Time kButtonDown = cosim::kMillisecond;
 
@@ -36,7 +36,7 @@ Timeline::Timeline(WorldModel& model, EventPlan plan, CommandSource* commands)
 }
 
 Time Timeline::now() const {
-    return static_cast<Time>(model_.steps_done()) * kStep;
+    return static_cast<Time>(model_.steps_done()) * kTimelineStep;
 }
 
 const Action& Timeline::action_of(const Due& due) const {
@@ -77,21 +77,21 @@ void Timeline::at_step(std::vector<std::string>& log) {
         const Due due = *bodies_.begin();
         bodies_.erase(bodies_.begin());
         const std::string refused = scene_.apply(action_of(due));
-        finish(due, now() + kStep, refused, log);
+        finish(due, now() + kTimelineStep, refused, log);
     }
     for (const std::size_t event : watches_.come_true())
-        schedule(event, now() + kStep + plan_.events[event].delay, ++serial_);
+        schedule(event, now() + kTimelineStep + plan_.events[event].delay, ++serial_);
     hear();
     carry_out(log);
 }
 
 /// What boards get until the next step.
 void Timeline::carry_out(std::vector<std::string>& log) {
-    while (!boards_.empty() && boards_.begin()->time <= now() + kStep) {
+    while (!boards_.empty() && boards_.begin()->time <= now() + kTimelineStep) {
         const Due due = *boards_.begin();
         boards_.erase(boards_.begin());
         const std::string refused = send(action_of(due), due.time);
-        finish(due, now() + 2 * kStep, refused, log);
+        finish(due, now() + 2 * kTimelineStep, refused, log);
     }
 }
 
@@ -124,7 +124,7 @@ void Timeline::hear() {
             continue;
         }
         live_[++serial_] = std::move(command);
-        schedule(Journal::kLive, now() + kStep, serial_);
+        schedule(Journal::kLive, now() + kTimelineStep, serial_);
     }
 }
 
@@ -182,7 +182,7 @@ std::string Timeline::press_key(const Action& action, Time time) {
 }
 
 void Timeline::take_signals(std::vector<BoardSignal>& signals) {
-    while (!signals_.empty() && signals_.begin()->first <= now() + kStep) {
+    while (!signals_.empty() && signals_.begin()->first <= now() + kTimelineStep) {
         signals.push_back(signals_.begin()->second);
         signals_.erase(signals_.begin());
     }

@@ -12,7 +12,7 @@ namespace puckloop::physics {
 namespace {
 
 constexpr double kFullByte = 255;
-constexpr double kFaintest = 1e-3;  // counts; keeps the curve's logarithm finite
+constexpr double kFaintestPeak = 1e-3;  // counts; keeps the curve's logarithm finite
 
 IrArray<double> spread(std::uint64_t seed, const std::string& stream, double sigma) {
     RandomStream random(seed, stream);
@@ -23,7 +23,7 @@ IrArray<double> spread(std::uint64_t seed, const std::string& stream, double sig
 }
 
 /// Share of full current.
-double current(const IrParameters& p, double potentiometer) {
+double emitter_current(const IrParameters& p, double potentiometer) {
     const double open = std::clamp(1.0 - potentiometer / kFullByte, 0.0, 1.0);
     return p.power_floor + (1.0 - p.power_floor) * std::pow(open, p.power_exponent);
 }
@@ -47,7 +47,7 @@ IrBoard::IrBoard(const IrParameters& parameters, std::uint64_t seed, std::string
                                  parameters.demodulator_gain[i] * demodulator[i]);
     }
     for (std::size_t i = 0; i < kIrCurvePoints; ++i)
-        log_level_[i] = std::log(std::max(parameters.level[i], kFaintest));
+        log_level_[i] = std::log(std::max(parameters.level[i], kFaintestPeak));
     place(0, 0, 0);
 }
 
@@ -70,8 +70,8 @@ void IrBoard::place(double x, double y, double heading) {
 }
 
 double IrBoard::power(double potentiometer) const {
-    const double reference = current(parameters_, parameters_.power_reference);
-    return reference > 0.0 ? current(parameters_, potentiometer) / reference : 0.0;
+    const double reference = emitter_current(parameters_, parameters_.power_reference);
+    return reference > 0.0 ? emitter_current(parameters_, potentiometer) / reference : 0.0;
 }
 
 double IrBoard::response(double hertz) const {

@@ -8,7 +8,7 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kTouching = 1e-9;  // m
+constexpr double kTouchingBoards = 1e-9;  // m
 
 // A board that sends with all emitters is seen as the sum of their lobes, 12/pi for cosine lobes. The carrier
 // is counted in boards, not in emitters. The range register is 2^(1/4) times the strength at two receivers
@@ -16,7 +16,7 @@ constexpr double kTouching = 1e-9;  // m
 constexpr double kEmittersSeen = kIrSensors / std::numbers::pi;
 const double kRegisterPerLevel = std::pow(2.0, 0.25);
 
-double lobe(double cosine, double exponent) {
+double board_lobe(double cosine, double exponent) {
     if (cosine <= 0.0) return 0.0;
     if (exponent == 1.0) return cosine;
     if (exponent == 0.5) return std::sqrt(cosine);
@@ -29,7 +29,7 @@ bool shaded(std::span<const Shape* const> shapes, const Point& from, double dx, 
     return std::any_of(shapes.begin(), shapes.end(), [&](const Shape* shape) {
         if (shape == except) return false;
         const auto hit = chord(*shape, from.x, from.y, dx, dy);
-        return hit && hit->out > kTouching && hit->in < length - kTouching;
+        return hit && hit->out > kTouchingBoards && hit->in < length - kTouchingBoards;
     });
 }
 
@@ -92,7 +92,7 @@ class Coupler {
         const double x = to.x - from.x;
         const double y = to.y - from.y;
         const double path = std::hypot(x, y);
-        if (path < kTouching) return add(e, k, 1.0, 1.0, 0.0, 1.0);
+        if (path < kTouchingBoards) return add(e, k, 1.0, 1.0, 0.0, 1.0);
         const double dx = x / path;
         const double dy = y / path;
         const double out = dx * from.dx + dy * from.dy;
@@ -122,7 +122,7 @@ class Coupler {
         const double first = path * before / (before + after);
         const Point at{image.x + dx * first, image.y + dy * first};
         const double along = (at.x - face.x) * -face.normal_y + (at.y - face.y) * face.normal_x;
-        if (std::abs(along) > face.half || first < kTouching) return;
+        if (std::abs(along) > face.half || first < kTouchingBoards) return;
         const double way_x = (at.x - from.x) / first;
         const double way_y = (at.y - from.y) / first;
         if (shaded(shapes_, {from.x, from.y}, way_x, way_y, first, &shape) ||
@@ -144,15 +144,15 @@ class Coupler {
     void add(std::size_t e, std::size_t k, double out, double in, double path, double share) {
         const auto& from = sender_.emitters()[e];
         const auto& to = receiver_.receivers()[k];
-        const double emitted = from.gain * lobe(out, tx_.emitter_exponent);
+        const double emitted = from.gain * board_lobe(out, tx_.emitter_exponent);
         const double falloff = (rx_.reach + rx_.source_offset) / (path + rx_.source_offset);
         const double carrier = carrier_scale_ * share * emitted * to.demodulator *
-                               lobe(in, rx_.demodulator_exponent) * falloff * falloff;
+                               board_lobe(in, rx_.demodulator_exponent) * falloff * falloff;
         const double bright = power_ * share;
         double level = 0.0;
         if (bright > 0.0) {
             const double seen_path = (path + rx_.source_offset) / std::sqrt(bright) - rx_.source_offset;
-            level = level_scale_ * emitted * to.gain * lobe(in, rx_.receiver_exponent) *
+            level = level_scale_ * emitted * to.gain * board_lobe(in, rx_.receiver_exponent) *
                     receiver_.level(seen_path);
         }
         result.carrier[e][k] += static_cast<float>(carrier);

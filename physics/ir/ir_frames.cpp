@@ -12,11 +12,11 @@ using cosim::Time;
 
 namespace {
 
-constexpr Time kEndChips = 3;       // dark for longer: the frame is over
+constexpr Time kDarkEndChips = 3;   // dark for longer: the frame is over
 constexpr Time kPreambleChips = 4;  // light for as long: a preamble
 constexpr Time kEarlyChips = 8;     // a preamble so soon after the first light is the frame's own
 
-constexpr const char* kHeader =
+constexpr const char* kFramesHeader =
     "t_s,end_s,sender,receiver,distance_m,level_counts,carrier,receivers,heard,overlap,receiver_sending";
 
 }  // namespace
@@ -25,7 +25,7 @@ IrFrames::IrFrames(const IrMedium& medium, const std::string& file)
     : medium_(medium), senders_(medium.board_count()), counts_(medium.board_count()) {
     for (std::size_t i = 0; i < medium.board_count(); ++i)
         chip_.push_back(cosim::from_seconds(medium.parameters(i).chip));
-    if (!file.empty()) csv_ = std::make_unique<CsvFile>(file, kHeader);
+    if (!file.empty()) csv_ = std::make_unique<CsvFile>(file, kFramesHeader);
 }
 
 void IrFrames::begin(std::size_t sender, Time start) {
@@ -86,7 +86,7 @@ void IrFrames::close_until(Time now) {
         std::size_t first = senders_.size();
         for (std::size_t i = 0; i < senders_.size(); ++i) {
             const Sender& s = senders_[i];
-            if (!s.frame || s.lit || s.frame->end + kEndChips * chip_[i] >= now) continue;
+            if (!s.frame || s.lit || s.frame->end + kDarkEndChips * chip_[i] >= now) continue;
             if (first == senders_.size() || s.frame->end < senders_[first].frame->end) first = i;
         }
         if (first == senders_.size()) return;

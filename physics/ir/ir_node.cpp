@@ -25,7 +25,7 @@ using cosim::Time;
 
 namespace {
 
-constexpr std::uint16_t kUnused = 0xFFFF;
+constexpr std::uint16_t kUnusedPort = 0xFFFF;
 constexpr int kCarrier = kIrSensors;
 constexpr int kPower = kIrSensors + 1;
 constexpr int kNothing = -1;
@@ -38,11 +38,11 @@ struct BoardSignals {
     explicit BoardSignals(const Robot& robot) {
         const auto id = [&](const std::string& name) {
             const auto found = robot.rab_signals.find(name);
-            return found == robot.rab_signals.end() ? kUnused : found->second;
+            return found == robot.rab_signals.end() ? kUnusedPort : found->second;
         };
         const auto read = [&](const std::string& name, int what) {
             const auto number = id(name);
-            if (number == kUnused) return;
+            if (number == kUnusedPort) return;
             if (meaning.size() <= number) meaning.resize(number + 1U, kNothing);
             meaning[number] = what;
         };
@@ -57,7 +57,7 @@ struct BoardSignals {
     }
 };
 
-World checked(const World& world) {
+World checked_for_ir(const World& world) {
     check(world);
     if (!has_rab(world)) throw InputError(world.file, "", "no robot has a range-and-bearing board");
     return world;
@@ -117,7 +117,7 @@ struct IrNode::Impl : cosim::Rewindable {
 };
 
 IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
-    : world(checked(description)),
+    : world(checked_for_ir(description)),
       name(options.name),
       medium(world, options.changes),
       frames(medium, options.frames_csv) {
@@ -292,7 +292,7 @@ void IrNode::Impl::release(Time until, std::vector<Message>& outbox) {
         receivers[r].release(until, released);
         for (const IrOutput& output : released) {
             const auto id = signals[r].output[output.index];
-            if (id == kUnused) continue;
+            if (id == kUnusedPort) continue;
             outbox.push_back({output.time, static_cast<PortIndex>(r), cosim::Signal{id, output.value}});
         }
     }

@@ -20,7 +20,7 @@ using cosim::Time;
 
 namespace {
 
-World checked(const World& world) {
+World checked_for_ircom(const World& world) {
     check(world);
     return world;
 }
@@ -73,7 +73,7 @@ struct IrcomNode::Impl : cosim::Rewindable {
 
 IrcomNode::Impl::Impl(const World& world, const IrcomNodeOptions& given)
     : options(given),
-      medium(checked(world), given.changes),
+      medium(checked_for_ircom(world), given.changes),
       faults(given.faults, medium),
       words(medium, given.words_csv) {
     const IrcomScene& scene = medium.scene();

@@ -11,25 +11,25 @@ constexpr double kTouching = 1e-9;  // m
 
 /// Amplitude between two robots face to face, by the distance of their centres: e-puck fact sheet 3.10. The
 /// last point, 10 counts at 22.5 cm, is the receiver's threshold and no measurement.
-constexpr double kFirst = 0.075, kStep = 0.005;  // m
+constexpr double kFirst = 0.075, kTableStep = 0.005;  // m
 constexpr std::array kAmplitude{3533.795, 2103.529, 1135.429, 701.817, 508.598, 375.808, 305.284, 264.408,
                                 206.877,  167.442,  137.039,  113.265, 91.575,  79.199,  69.404,  66.090,
                                 51.444,   44.032,   38.548,   34.990,  31.674,  27.999,  25.922,  23.381,
                                 21.986,   20.040,   18.303,   17.134,  16.112,  14.560};
 /// Between the fronts of two robots face to face, of the way between their centres.
 constexpr double kBetweenSensors = 0.062;
-constexpr double kHighest = 8000;  // counts, at contact
+constexpr double kHighestCount = 8000;  // counts, at contact
 constexpr int kRounds = 8;
 
-/// Logarithms of the level of one diode, at kFirst + i * kStep - kBetweenSensors.
+/// Logarithms of the level of one diode, at kFirst + i * kTableStep - kBetweenSensors.
 using Curve = std::array<double, kAmplitude.size()>;
 
 double at(const Curve& curve, double metres) {
-    const double place = (metres + kBetweenSensors - kFirst) / kStep;
+    const double place = (metres + kBetweenSensors - kFirst) / kTableStep;
     const auto last = static_cast<double>(curve.size() - 2);
     const double below = std::clamp(std::floor(place), 0.0, last);
     const auto i = static_cast<std::size_t>(below);
-    return std::min(std::exp(curve[i] + (place - below) * (curve[i + 1] - curve[i])), kHighest);
+    return std::min(std::exp(curve[i] + (place - below) * (curve[i + 1] - curve[i])), kHighestCount);
 }
 
 double lobe(double cosine, double exponent) {
@@ -43,7 +43,7 @@ double counts(const Curve& curve, const IrcomPart& from, const IrcomPart& to, co
     const double y = to.y - from.y;
     const double way = std::hypot(x, y);
     if (way > p.reach) return 0.0;
-    if (way < kTouching) return kHighest;
+    if (way < kTouching) return kHighestCount;
     const double out = (x * from.dx + y * from.dy) / way;
     const double in = -(x * to.dx + y * to.dy) / way;
     if (out <= 0.0 || in <= 0.0) return 0.0;
@@ -73,7 +73,7 @@ Curve calibrated() {
     for (int round = 0; round < kRounds; ++round) {
         Curve better = curve;
         for (std::size_t i = 0; i < curve.size(); ++i) {
-            const double distance = kFirst + static_cast<double>(i) * kStep;
+            const double distance = kFirst + static_cast<double>(i) * kTableStep;
             better[i] += std::log(kAmplitude[i] / face_to_face(curve, distance, defaults));
         }
         for (std::size_t i = 1; i < curve.size(); ++i)  // the measurement is not quite smooth

@@ -13,7 +13,7 @@ using protocols::IrcomReading;
 
 namespace {
 constexpr int kFewestEdges = 20;
-constexpr double kSeen = 1.0;  // counts: what another's word must have to overlap one
+constexpr double kSeenOfOther = 1.0;  // counts: what another's word must have to overlap one
 }  // namespace
 
 IrcomWords::IrcomWords(const IrcomMedium& medium, const std::string& file) : medium_(medium) {
@@ -91,7 +91,7 @@ void IrcomWords::write(std::size_t device, const IrcomReading& reading) {
         bool overlap = false;
         for (std::size_t other = 0; other < senders_.size(); ++other)
             overlap |= other != r && sender.with[other] != 0 && senders_[other].edges > 2 &&
-                       senders_[other].brightest[r] >= kSeen;
+                       senders_[other].brightest[r] >= kSeenOfOther;
         csv_->row(fmt::format("{},{},{:.1f},{},{}", head, scene.name(r), sender.brightest[r], overlap ? 1 : 0,
                               sender.with[r] != 0 && senders_[r].edges > 2 ? 1 : 0));
     }

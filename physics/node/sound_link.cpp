@@ -14,8 +14,8 @@ namespace puckloop::physics {
 namespace {
 
 /// As long as a sound is on its way through the largest arena there is to hear it in.
-constexpr double kOnTheWay = 0.1;   // s
-constexpr double kQuantum = 0.125;  // counts
+constexpr double kOnTheWay = 0.1;        // s
+constexpr double kSoundQuantum = 0.125;  // counts
 /// Largest minus smallest value of a full-scale tone 0.1 m before a plain microphone; an assumption.
 constexpr double kSpeakerLevel = 600;     // counts
 constexpr double kSpeakerHeight = 0.045;  // m, above the middle of the axle; an assumption
@@ -97,7 +97,7 @@ void SoundLink::publish_to(Robot& robot, const RobotState& state, cosim::Time st
     }
     for (std::size_t i = 0; i < kSoundSamples; ++i)
         for (std::size_t mic = 0; mic < kMicrophones; ++mic) {
-            const double value = std::round(waves[mic][i] / kQuantum) * kQuantum;
+            const double value = std::round(waves[mic][i] / kSoundQuantum) * kSoundQuantum;
             if (value == robot.last[mic]) continue;
             robot.last[mic] = value;
             const cosim::Time time = stamp + static_cast<cosim::Time>(i) * kSoundPeriod;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr cosim::Time kStep = cosim::kMillisecond;
 constexpr std::size_t kPortsOfRobot = 2;
-constexpr std::array<double, kPoseSignals> kPoseQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
+constexpr std::array<double, kPoseSignals> kBodyQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
 
 /// What was done, and what never happened.
 void add_events(const Journal& journal, nlohmann::ordered_json& report) {
@@ -199,7 +199,7 @@ void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
         const auto now = i < links.size() ? pose(model.state(i)) : pose(model.object(i - links.size()));
         for (std::size_t k = 0; k < kPoseSignals; ++k) {
             const std::size_t id = i * kPoseSignals + k;
-            const double value = std::round(now[k] / kPoseQuantum[k]) * kPoseQuantum[k];
+            const double value = std::round(now[k] / kBodyQuantum[k]) * kBodyQuantum[k];
             if (value == poses[id]) continue;
             poses[id] = value;
             for (const auto port : pose_ports)

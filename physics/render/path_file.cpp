@@ -13,11 +13,11 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr std::size_t kFields = 5;
+constexpr std::size_t kPathFields = 5;
 
 bool parse(std::string_view line, std::string& name, PathPoint& point) {
     const auto fields = csv_cells(line, ',');
-    if (fields.size() != kFields) return false;
+    if (fields.size() != kPathFields) return false;
     name = fields[1];
     return csv_number(fields[0], point.seconds) && csv_number(fields[2], point.x) &&
            csv_number(fields[3], point.y) && csv_number(fields[4], point.heading);

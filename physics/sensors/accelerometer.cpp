@@ -9,7 +9,7 @@
 namespace puckloop::physics {
 
 namespace {
-constexpr double kFullScale = 4095;
+constexpr double kAccelerometerFullScale = 4095;
 }  // namespace
 
 Accelerometer::Accelerometer(const AccelerometerParameters& parameters, const SimulationParameters& world,
@@ -58,7 +58,7 @@ std::array<double, 3> Accelerometer::sense(const RobotState& robot, const Surrou
         counts[axis] *= 1.0 - p.motor_sag * now.motors;
         if (shake > 0.0) counts[axis] += shake * vibration_.normal();
         in_g_[axis] = (counts[axis] - p.zero) / p.gain;
-        counts[axis] = std::clamp(counts[axis], 0.0, kFullScale);
+        counts[axis] = std::clamp(counts[axis], 0.0, kAccelerometerFullScale);
     }
     in_g_ = {-in_g_[1], -in_g_[0], in_g_[2]};
     return counts;

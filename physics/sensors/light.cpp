@@ -8,9 +8,9 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kFullScale = 4095;
+constexpr double kLightFullScale = 4095;
 
-constexpr double kRounding = 1e-6;  // m: far above any rounding of a distance here
+constexpr double kDistanceRounding = 1e-6;  // m: far above any rounding of a distance here
 
 /// Does any of them stand on the line from (sensor, height) to the lamp, `level` metres away in plan?
 bool shaded(std::span<const Shape* const> shapes, const Ray& line, double height, const Lamp& lamp,
@@ -40,7 +40,7 @@ LightRing::LightRing(const LightParameters& parameters, const ProximityParameter
 /// Is any sensor of a robot there within the lamp's range?
 bool LightRing::reaches(const Lamp& lamp, const RobotState& robot) const {
     const double dx = lamp.x - robot.x, dy = lamp.y - robot.y;
-    const double far = parameters_.range + ring_ + kRounding;
+    const double far = parameters_.range + ring_ + kDistanceRounding;
     return dx * dx + dy * dy <= far * far;
 }
 
@@ -53,7 +53,7 @@ void LightRing::look_between(const SensorView& view, const Lamp& lamp) {
         const double x = shape->x - view.robot.x, y = shape->y - view.robot.y;
         const double along = length2 > 0.0 ? std::clamp((x * dx + y * dy) / length2, 0.0, 1.0) : 0.0;
         const double away_x = x - along * dx, away_y = y - along * dy;
-        const double near = shape->radius + ring_ + kRounding;
+        const double near = shape->radius + ring_ + kDistanceRounding;
         if (away_x * away_x + away_y * away_y <= near * near) between_.push_back(shape);
     }
 }
@@ -92,7 +92,7 @@ std::array<double, kProximitySensors> LightRing::sense(const SensorView& view) {
     }
     std::array<double, kProximitySensors> counts{};
     for (std::size_t i = 0; i < kProximitySensors; ++i)
-        counts[i] = std::clamp(p.dark + p.offset[i] - p.span * p.gain[i] * light[i], 0.0, kFullScale);
+        counts[i] = std::clamp(p.dark + p.offset[i] - p.span * p.gain[i] * light[i], 0.0, kLightFullScale);
     return counts;
 }
 

@@ -7,7 +7,7 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kFullScale = 4095;
+constexpr double kProximityFullScale = 4095;
 constexpr double kExponentReference = 0.03;  // m: where proximity.extra_exponent changes nothing
 constexpr double kExponentOrigin = 0.0099;   // m: effective origin of the measured table [M]
 constexpr double kBatteryReference = 3.7;    // V: where proximity.battery_gain changes nothing
@@ -128,7 +128,7 @@ ProximityRing::answer(const std::array<double, kProximitySensors>& reflected, co
 std::array<double, kProximitySensors>
 ProximityRing::readable(std::array<double, kProximitySensors> counts) const {
     for (double& count : counts) {
-        count = std::clamp(count, 0.0, kFullScale);
+        count = std::clamp(count, 0.0, kProximityFullScale);
         if (count < parameters_.threshold) count = 0.0;
     }
     return counts;

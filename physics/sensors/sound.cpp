@@ -10,7 +10,7 @@
 namespace puckloop::physics {
 
 namespace {
-constexpr double kFullScale = 4095;
+constexpr double kSoundFullScale = 4095;
 constexpr double kReference = 0.1;  // m, where a loudspeaker's level holds
 constexpr double kNearest = 1e-3;   // m
 }  // namespace
@@ -44,7 +44,7 @@ std::array<double, kMicrophones> Ears::hear(const RobotState& robot, double seco
         }
         levels[i] = std::clamp(std::sqrt(power) * p.gain[i] * warm + p.self_noise +
                                    p.motor_noise * motor_speed / kSpeedUnit,
-                               0.0, kFullScale);
+                               0.0, kSoundFullScale);
     }
     return levels;
 }

@@ -8,8 +8,8 @@
 namespace puckloop::physics {
 
 namespace {
-constexpr double kReference = 0.1;  // m, where a speaker's level holds
-constexpr double kNearest = 1e-3;   // m
+constexpr double kSpeakerReference = 0.1;  // m, where a speaker's level holds
+constexpr double kNearestEar = 1e-3;       // m
 /// Longest line between two samples: the period of the slowest codec.
 constexpr double kLongestLine = 250e-6;  // s
 constexpr double kHold = 5e-3;           // s
@@ -61,9 +61,9 @@ std::array<SoundWay, kMicrophones> sound_ways(const MicrophoneParameters& p, con
         const Ray ear = in_world(robot, cosine, sine,
                                  {p.x[i], p.y[i], std::cos(p.direction[i]), std::sin(p.direction[i])});
         const double dx = x - ear.x, dy = y - ear.y;
-        const double distance = std::max(std::hypot(dx, dy, height - p.height), kNearest);
+        const double distance = std::max(std::hypot(dx, dy, height - p.height), kNearestEar);
         const double facing = (dx * ear.dx + dy * ear.dy) / distance;
-        ways[i] = {distance, std::pow(kReference / distance, p.exponent) *
+        ways[i] = {distance, std::pow(kSpeakerReference / distance, p.exponent) *
                                  std::max(1.0 + p.directivity * facing, 0.0) * p.gain[i] * warm};
     }
     return ways;

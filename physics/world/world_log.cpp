@@ -14,16 +14,16 @@ namespace {
 constexpr const char* kSide[] = {"left", "right"};
 
 /// No "-0.0000".
-double tidy(double value) {
+double tidy_logged(double value) {
     return std::abs(value) < 5e-5 ? 0.0 : value;
 }
 
 double degrees(double radians) {
-    return tidy(std::remainder(radians, 2 * std::numbers::pi) * 180 / std::numbers::pi);
+    return tidy_logged(std::remainder(radians, 2 * std::numbers::pi) * 180 / std::numbers::pi);
 }
 
 std::string at(double x, double y) {
-    return fmt::format("({:.4f}, {:.4f}) m", tidy(x), tidy(y));
+    return fmt::format("({:.4f}, {:.4f}) m", tidy_logged(x), tidy_logged(y));
 }
 
 std::string mass_of(bool movable, double mass) {
@@ -169,8 +169,9 @@ void WorldLog::end(const WorldModel& world) {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
         const RobotModel& robot = world.robot(i);
         write(fmt::format("{} ends at {}; steps lost: {:.0f} left, {:.0f} right; battery {:.3f} V",
-                          robots_[i], pose(world.state(i)), tidy(robot.drive(Side::Left).lost()),
-                          tidy(robot.drive(Side::Right).lost()), robot.channels()[kBatteryVoltageChannel]));
+                          robots_[i], pose(world.state(i)), tidy_logged(robot.drive(Side::Left).lost()),
+                          tidy_logged(robot.drive(Side::Right).lost()),
+                          robot.channels()[kBatteryVoltageChannel]));
     }
     for (std::size_t i = 0; i < world.object_names().size(); ++i)
         write(fmt::format("{} ends at {}, heading {:.2f} deg", world.object_names()[i],

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSeenShift = 2e-6;  // m
 constexpr double kSeenTurn = 5e-5;   // rad
 
-World checked(World description) {
+World checked_description(World description) {
     check(description);
     return description;
 }
@@ -31,7 +31,7 @@ void WorldModel::Moving::update(double new_x, double new_y, double new_heading) 
 }
 
 WorldModel::WorldModel(World description)
-    : description_(checked(std::move(description))),
+    : description_(checked_description(std::move(description))),
       parameters_(with({}, description_.parameters)),
       fixed_(fixed_shapes(description_)),
       fixed_names_(physics::fixed_names(description_)),
