@@ -16,7 +16,7 @@ namespace puckloop::exec {
 
 namespace {
 
-constexpr double kFullScale = 32768.0;
+constexpr double kSampleFullScale = 32768.0;
 constexpr std::uint32_t kSampleBytes = 2, kHeaderBytes = 44, kFormatBytes = 16;
 constexpr std::uint32_t kRateOfOne = 8000;  // where a single sample came
 
@@ -53,7 +53,8 @@ void WavFile::append(double value, cosim::Time time) {
     const auto place = static_cast<std::size_t>((time + period_ / 2) / period_);
     if (place >= kMostSamples) return;
     if (place >= samples_.size()) samples_.resize(place + 1, 0);
-    const double code = std::clamp(std::round(value * kFullScale), -kFullScale, kFullScale - 1.0);
+    const double code =
+        std::clamp(std::round(value * kSampleFullScale), -kSampleFullScale, kSampleFullScale - 1.0);
     samples_[place] = static_cast<std::int16_t>(code);
 }
 

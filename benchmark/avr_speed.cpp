@@ -17,7 +17,7 @@ namespace {
 
 using cosim::Time;
 
-double processor_seconds() {
+double avr_processor_seconds() {
     timespec time{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
     constexpr double kNanoseconds = 1e-9;
@@ -94,9 +94,9 @@ double avr_program_speed(const std::filesystem::path& image, double slice_s) {
     constexpr Time kStep = 20 * cosim::kMillisecond;
     chip.run_until(kStep);
     const avr::Cycle first = chip.cycle();
-    const double start = processor_seconds();
+    const double start = avr_processor_seconds();
     double elapsed = 0;
-    while ((elapsed = processor_seconds() - start) < slice_s)
+    while ((elapsed = avr_processor_seconds() - start) < slice_s)
         chip.run_until(chip.now() + kStep);
     constexpr double kMillions = 1e-6;
     return static_cast<double>(chip.cycle() - first) / elapsed * kMillions;
@@ -106,9 +106,9 @@ double tam_idle_speed(const std::filesystem::path& image, double slice_s) {
     Booth booth(image);
     booth.run_until(cosim::from_seconds(kTamStartUp));
     const Time begin = booth.now();
-    const double start = processor_seconds();
+    const double start = avr_processor_seconds();
     double elapsed = 0;
-    while ((elapsed = processor_seconds() - start) < slice_s)
+    while ((elapsed = avr_processor_seconds() - start) < slice_s)
         booth.run_until(booth.now() + 50 * cosim::kMillisecond);
     return cosim::to_seconds(booth.now() - begin) / elapsed;
 }

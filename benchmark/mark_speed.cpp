@@ -12,7 +12,7 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr cosim::Time kStartUp = 100 * cosim::kMillisecond;
+constexpr cosim::Time kMarkStartUp = 100 * cosim::kMillisecond;
 constexpr cosim::Time kStretch = 200 * cosim::kMicrosecond;
 
 std::unique_ptr<cosim::Node> make(const std::filesystem::path& path, MarkedBoard board) {
@@ -29,7 +29,7 @@ double mark_speed(const std::filesystem::path& image, MarkedBoard board, GoingBa
     const auto node = make(image, board);
     cosim::Rewindable& back = *node->rewindable();
     std::vector<cosim::Message> outbox;
-    cosim::Time now = kStartUp;
+    cosim::Time now = kMarkStartUp;
     node->advance(now, {}, outbox);
     const auto start = Clock::now();
     Clock::duration marking{}, rewinding{};

@@ -24,7 +24,7 @@ double busy_now() {
     return busy_seconds(line, static_cast<double>(::sysconf(_SC_CLK_TCK)));
 }
 
-double seconds(const timeval& time) {
+double seconds_of_load(const timeval& time) {
     constexpr double kMicro = 1e-6;
     return static_cast<double>(time.tv_sec) + kMicro * static_cast<double>(time.tv_usec);
 }
@@ -35,7 +35,7 @@ double own_cpu_now() {
     for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
         rusage usage{};
         getrusage(who, &usage);
-        sum += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+        sum += seconds_of_load(usage.ru_utime) + seconds_of_load(usage.ru_stime);
     }
     return sum;
 }

@@ -13,7 +13,7 @@ namespace {
 
 using cosim::Time;
 
-constexpr Time kStartUp = 100 * cosim::kMillisecond;
+constexpr Time kRabStartUp = 100 * cosim::kMillisecond;
 constexpr Time kSlice = 10 * cosim::kMillisecond;
 constexpr Time kBit = cosim::kSecond / 57'600;
 constexpr std::string_view kCommand = "A5C3";  // four hexadecimal digits: send them
@@ -40,9 +40,9 @@ double rab_board_speed(const std::filesystem::path& image, RabWork work, double 
     using Clock = std::chrono::steady_clock;
     rab::RabNode node(image::load_image(image.string()), {});
     std::vector<cosim::Message> outbox;
-    node.advance(kStartUp, {}, outbox);
+    node.advance(kRabStartUp, {}, outbox);
     const auto start = Clock::now();
-    Time now = kStartUp;
+    Time now = kRabStartUp;
     double elapsed = 0;
     do {
         const std::vector<cosim::Message> inbox =
@@ -52,7 +52,7 @@ double rab_board_speed(const std::filesystem::path& image, RabWork work, double 
         node.advance(now, inbox, outbox);
         elapsed = std::chrono::duration<double>(Clock::now() - start).count();
     } while (elapsed < wall_s);
-    return cosim::to_seconds(now - kStartUp) / elapsed;
+    return cosim::to_seconds(now - kRabStartUp) / elapsed;
 }
 
 }  // namespace puckloop::tools

@@ -24,7 +24,7 @@ constexpr std::uint32_t kWholeWords = 0x1000000;
 constexpr std::uint32_t kProgramSpace = 0x1000000;
 constexpr std::uint16_t kWEnd = 0x20;
 constexpr std::uint16_t kDmaRam = 0x7800;  ///< of the dsPIC33FJ256GP710, up to the end of its RAM
-constexpr std::size_t kPc = 16, kAccA = 17, kAccB = 18, kSpecials = 19;
+constexpr std::size_t kDspicPc = 16, kAccA = 17, kAccB = 18, kSpecials = 19;
 /// Behind PC and the accumulators; read and written by their data-sheet names.
 constexpr std::string_view kSpecialNames[] = {"SR",     "CORCON", "SPLIM",  "RCOUNT", "DCOUNT",
                                               "TBLPAG", "PSVPAG", "MODCON", "XBREV",  "DISICNT"};
@@ -57,7 +57,7 @@ class DspicDebugChip final : public DebugChip {
         const dspic::CoreState s = core().state();
         for (std::size_t i = 0; i < s.w.size(); ++i)
             values[i] = s.w[i];
-        values[kPc] = s.pc;
+        values[kDspicPc] = s.pc;
         values[kAccA] = static_cast<std::uint64_t>(s.acc[0]);
         values[kAccB] = static_cast<std::uint64_t>(s.acc[1]);
         const std::uint64_t disicnt = s.disi_end > s.cycle ? s.disi_end - s.cycle : 0;
@@ -67,11 +67,11 @@ class DspicDebugChip final : public DebugChip {
         std::copy(std::begin(specials), std::end(specials), values.begin() + kSpecials);
     }
     bool write_register(std::size_t number, std::uint64_t value) override {
-        if (number < kPc) {
+        if (number < kDspicPc) {
             core().set_w(static_cast<int>(number), static_cast<std::uint16_t>(value));
             return true;
         }
-        if (number == kPc) {
+        if (number == kDspicPc) {
             if (!is_code(static_cast<std::uint32_t>(value))) return false;
             core().set_pc(static_cast<std::uint32_t>(value));
             return true;

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostReads = 1000;
+constexpr std::size_t kMostReadsInJson = 1000;
 
 ordered_json functions_json(const Profile& profile, const Places& places) {
     const FunctionNames names(profile, places);
@@ -27,7 +27,7 @@ ordered_json functions_json(const Profile& profile, const Places& places) {
 ordered_json reads_json(const Profile& profile, const Places& places, const Variables& variables) {
     ordered_json reads = ordered_json::array();
     for (const Profile::Unwritten& read : profile.unwritten()) {
-        if (reads.size() == kMostReads) break;
+        if (reads.size() == kMostReadsInJson) break;
         reads.push_back({{"address", read.address},
                          {"variable", variables.name_at(read.address)},
                          {"pc", fmt::format("0x{:06x}", read.pc)},

@@ -13,11 +13,11 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr double kField = 0.6, kCorner = 0.2;  // m
-constexpr double kStands = 0.0005;             // m: points closer than that are one
+constexpr double kRadioField = 0.6, kRadioCorner = 0.2;  // m
+constexpr double kStands = 0.0005;                       // m: points closer than that are one
 /// Simulated time for a second of the walk at most: each exchange of 20 s has five seconds of silence behind
 /// it, in which it walks.
-constexpr double kShare = 5.5, kStart = 10.0;
+constexpr double kShare = 5.5, kRadioStart = 10.0;
 constexpr int kCaller = 1234, kWalker = 1;
 
 }  // namespace
@@ -64,10 +64,10 @@ EarsRadio ears_with_radio(const SoundOptions& options) {
     spec.folder = options.folder / "radio";
     spec.seed = options.seed * 1000;
     spec.overlay = options.overlay;
-    spec.arena = kField;
-    spec.seconds = kStart + kShare * options.walk_s;
+    spec.arena = kRadioField;
+    spec.seconds = kRadioStart + kShare * options.walk_s;
     spec.robots = {{"R", options.walker, 0.0, 0.0, 0.0, 0, {}, kCaller},
-                   {"E", options.walker, -kCorner, -kCorner, 0.0, 1, {}, kWalker}};
+                   {"E", options.walker, -kRadioCorner, -kRadioCorner, 0.0, 1, {}, kWalker}};
     const Trial run = run_trial(spec);
     if (std::none_of(run.lines.at(1).begin(), run.lines.at(1).end(),
                      [](const RobotLine& line) { return line.text == "walks"; }))

@@ -9,7 +9,7 @@ namespace puckloop::tools {
 namespace {
 
 /// s of an attempt: the longest mean that was seen, and the pause of 5 s behind it. What is left over is cut.
-constexpr double kAttempt = 27.0, kStart = 30.0;
+constexpr double kAttempt = 27.0, kExchangeStartUp = 30.0;
 
 std::string seconds(const std::optional<double>& value) {
     return value ? fmt::format("{:.3f}", *value) : std::string();
@@ -21,7 +21,7 @@ std::vector<ReportedExchange> exchange_on_boards(const BoardExchanges& options) 
     TrialSpec spec;
     spec.folder = options.folder;
     spec.seed = options.seed;
-    spec.seconds = kStart + kAttempt * static_cast<double>(options.attempts);
+    spec.seconds = kExchangeStartUp + kAttempt * static_cast<double>(options.attempts);
     TrialRobot caller{"caller", options.firmware, -0.2, -0.2, 0.0, 1, {}, 1},
         listener{"listener", options.firmware, 0.0, 0.0, 0.0, 0, {}, 1234};
     spec.robots = {caller, listener};

@@ -16,15 +16,15 @@ namespace puckloop::exec {
 
 namespace {
 
-constexpr int kPinsOfPort = 8, kChannels = 8, kClocksOfByte = 9;
-constexpr double kHighestVolts = 5.5, kSupplyVolts = 5.0;
+constexpr int kPinsOfPort = 8, kChannels = 8, kTwiClocksOfByte = 9;
+constexpr double kHighestAvrVolts = 5.5, kAvrSupplyVolts = 5.0;
 constexpr std::uint32_t kWatchHertz = 32'768;
 
 avr::ChipOptions chip_options(const TargetOptions& options) {
     avr::ChipOptions chip;
     chip.oscillator_hertz = options.chip.crystal_hertz;
     chip.ppm = options.chip.ppm;
-    chip.avcc = chip.aref = kSupplyVolts;
+    chip.avcc = chip.aref = kAvrSupplyVolts;
     chip.watch_hertz = kWatchHertz;
     return chip;
 }
@@ -39,15 +39,15 @@ class AvrChip final : public AvrTarget, private avr::Pins {
         : AvrTarget(device, options.fuses, listener), chip_(device, *this, chip_options(options)) {
         using enum cosim::SignalDirection;
         for (int channel = 0; channel < kChannels; ++channel)
-            add({fmt::format("adc{}", channel), Input, "V", 0, kHighestVolts,
+            add({fmt::format("adc{}", channel), Input, "V", 0, kHighestAvrVolts,
                  fmt::format("voltage at ADC{}", channel), 0});
         for (int port = 0; port < kPorts; ++port)
             for (int pin = 0; pin < kPinsOfPort; ++pin)
                 add({fmt::format("P{}{}", static_cast<char>('A' + port), pin), Input, "level", 0, 1,
                      "level at the pin while it is an input", 1});
-        add({"ain0", Input, "V", 0, kHighestVolts, "voltage at the comparator's AIN0", 0});
-        add({"ain1", Input, "V", 0, kHighestVolts, "voltage at the comparator's AIN1", 0});
-        add({"vcc", Input, "V", 0, kHighestVolts, "supply, and AVCC; AREF stays at 5 V", kSupplyVolts});
+        add({"ain0", Input, "V", 0, kHighestAvrVolts, "voltage at the comparator's AIN0", 0});
+        add({"ain1", Input, "V", 0, kHighestAvrVolts, "voltage at the comparator's AIN1", 0});
+        add({"vcc", Input, "V", 0, kHighestAvrVolts, "supply, and AVCC; AREF stays at 5 V", kAvrSupplyVolts});
         levels_.fill(0xFF);
         chip_.set_skipping(options.skip_idle);
         if (options.i2c_devices.empty()) return;
@@ -135,7 +135,7 @@ class AvrChip final : public AvrTarget, private avr::Pins {
         nobody.kind = reads ? cosim::I2cPhaseKind::Data : cosim::I2cPhaseKind::Acknowledge;
         nobody.byte = 0xFF;
         nobody.ack = 0;
-        chip_.twi_answer_at(nobody, phase.start + kClocksOfByte * phase.clock_period);
+        chip_.twi_answer_at(nobody, phase.start + kTwiClocksOfByte * phase.clock_period);
         nobody.kind = phase.kind;
         listener().i2c_phase(kI2cDeviceUnit, nobody);
     }

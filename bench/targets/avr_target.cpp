@@ -13,8 +13,8 @@ namespace puckloop::exec {
 
 namespace {
 
-constexpr std::size_t kShownInText = 10;
-constexpr int kPinsOfPort = 8;
+constexpr std::size_t kShownOfAvr = 10;
+constexpr int kPinsOfAvrPort = 8;
 
 std::string hexadecimal(std::uint32_t address) {
     return fmt::format("0x{:04x}", address);
@@ -67,7 +67,7 @@ void AvrTarget::show_pins(avr::PortLetter port, std::uint8_t levels, std::uint8_
     const unsigned changed = (old_levels ^ levels) | (old_driven ^ driven);
     old_levels = levels;
     old_driven = driven;
-    for (int pin = 0; pin < kPinsOfPort; ++pin) {
+    for (int pin = 0; pin < kPinsOfAvrPort; ++pin) {
         if ((changed >> pin & 1u) == 0) continue;
         std::optional<bool> level;
         if ((driven >> pin & 1u) != 0) level = (levels >> pin & 1u) != 0;
@@ -105,10 +105,10 @@ std::string AvrTarget::chip_json() {
 std::string AvrTarget::chip_text() {
     const avr::ChipReport report = avr().report();
     std::string text = fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
-    for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
+    for (std::size_t i = 0; i < report.resets.size() && i < kShownOfAvr; ++i)
         text += fmt::format("reset: {} at {:.6f} s, {}\n", avr::to_string(report.resets[i].cause),
                             seconds(report.resets[i].cycle), avr::place_text(avr(), report.resets[i].pc));
-    if (report.resets.size() > kShownInText) text += fmt::format("resets: {} in all\n", report.resets.size());
+    if (report.resets.size() > kShownOfAvr) text += fmt::format("resets: {} in all\n", report.resets.size());
     return text;
 }
 

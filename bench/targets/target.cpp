@@ -18,7 +18,7 @@
 namespace puckloop::exec {
 
 namespace {
-constexpr std::size_t kShownInText = 10;
+constexpr std::size_t kShownOfBoard = 10;
 }
 
 dspic::Chip& Target::chip() {
@@ -61,16 +61,17 @@ std::string Target::chip_text() {
     const dspic::ChipReport report = chip().report();
     const auto seconds = [&](dspic::Cycle cycle) { return cosim::to_seconds(clock().time_of(cycle)); };
     std::string text = fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
-    for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
+    for (std::size_t i = 0; i < report.resets.size() && i < kShownOfBoard; ++i)
         text += fmt::format("reset: {} at {:.6f} s, pc 0x{:04x}{}\n", report.resets[i].cause,
                             seconds(report.resets[i].cycle), report.resets[i].pc,
                             chip().places().text(report.resets[i].pc));
-    if (report.resets.size() > kShownInText) text += fmt::format("resets: {} in all\n", report.resets.size());
-    for (std::size_t i = 0; i < report.traps.size() && i < kShownInText; ++i)
+    if (report.resets.size() > kShownOfBoard)
+        text += fmt::format("resets: {} in all\n", report.resets.size());
+    for (std::size_t i = 0; i < report.traps.size() && i < kShownOfBoard; ++i)
         text += fmt::format("trap: {} at {:.6f} s, pc 0x{:04x}{}\n", report.traps[i].name,
                             seconds(report.traps[i].cycle), report.traps[i].pc,
                             chip().places().text(report.traps[i].pc));
-    if (report.traps.size() > kShownInText) text += fmt::format("traps: {} in all\n", report.traps.size());
+    if (report.traps.size() > kShownOfBoard) text += fmt::format("traps: {} in all\n", report.traps.size());
     return text;
 }
 

@@ -14,7 +14,7 @@ namespace puckloop::tools {
 namespace {
 
 constexpr double kWidth = 900, kHead = 60, kPanel = 270, kFoot = 24;  // pixels
-constexpr double kCentimetres = 100;
+constexpr double kCentimetresOfMetre = 100;
 constexpr double kZ90 = 1.2815516;  // standard normal quantile of 90 %
 constexpr const char* kMeasured = "#1f6fb2";
 constexpr const char* kPublished = "#c2541b";
@@ -27,7 +27,7 @@ Chart panel(const std::vector<RabSummary>& summary, const char* title, const cha
     Chart chart(title, "free distance between the robots, cm", axis);
     std::vector<std::string> names;
     for (const RabSummary& s : summary)
-        names.push_back(fmt::format("{:g}", s.distance * kCentimetres));
+        names.push_back(fmt::format("{:g}", s.distance * kCentimetresOfMetre));
     chart.categories(names);
     chart.level(0);
     return chart;
@@ -84,7 +84,7 @@ std::string distance_panel(const std::vector<RabSummary>& summary) {
     Chart chart = panel(summary, "distance computed (dashes: the true one)", "cm");
     for (std::size_t i = 0; i < summary.size(); ++i) {
         const RabSummary& s = summary[i];
-        const double middle = static_cast<double>(i), truth = s.distance * kCentimetres;
+        const double middle = static_cast<double>(i), truth = s.distance * kCentimetresOfMetre;
         chart.line({middle - 0.42, middle + 0.42}, {truth, truth}, "#333333", "", true);
         add_measured(chart, i, s.estimate_cm.p10, s.estimate_cm.median, s.estimate_cm.p90);
         add_published(chart, i, s.distance,

@@ -17,7 +17,7 @@ using debug::Stop;
 namespace {
 
 /// Instructions between two looks at what the debugger sent.
-constexpr unsigned kLookEvery = 4096;
+constexpr unsigned kInstructionsBetweenLooks = 4096;
 
 }  // namespace
 
@@ -84,7 +84,7 @@ bool BoardDebugger::instruction(std::uint32_t /*pc*/, std::uint64_t cycle) {
     if (socket_.connected() && run_.listens_to(*this)) {
         if (!control_.instrument().instruction(chip_->pc(), position()))
             run_.stopped(*this);
-        else if (++looked_ % kLookEvery == 0 && session_.wants_stop())
+        else if (++looked_ % kInstructionsBetweenLooks == 0 && session_.wants_stop())
             run_.stand_still(*this, {Stop::Why::Interrupt}, true);
     }
     // Whoever stops here sees the chip before its reset; then it comes again, with its first instruction.

@@ -18,7 +18,7 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr std::size_t kLongestLine = 1 << 20;
+constexpr std::size_t kLongestClientLine = 1 << 20;
 constexpr int kLookMs = 100;  ///< so often it is looked for Ctrl-C
 
 bool set(const volatile std::sig_atomic_t* flag) {
@@ -82,7 +82,7 @@ std::optional<std::string> ClientLine::next(const volatile std::sig_atomic_t* in
         const ssize_t got = ::recv(client_, piece, sizeof piece, 0);
         if (got > 0) text_.append(piece, static_cast<std::size_t>(got));
         const bool lost = got == 0 || (got < 0 && errno != EINTR);
-        if (lost || text_.size() > kLongestLine) drop();
+        if (lost || text_.size() > kLongestClientLine) drop();
     }
     return std::nullopt;
 }

@@ -12,7 +12,7 @@ namespace {
 using scenarios::BluetoothModule;
 
 constexpr const char* kNode = "bluetooth";
-constexpr double kBaud = 115200.0;  // of every module, and of a computer's line
+constexpr double kBluetoothBaud = 115200.0;  // of every module, and of a computer's line
 
 bluetooth::RobotModule module_spec(const std::string& robot, std::size_t index,
                                    const BluetoothModule& module) {
@@ -56,11 +56,12 @@ void add_bluetooth(RunSetup& setup, const RunRequest& request) {
         const BluetoothModule& module = *robot.pic.bluetooth;
         spec.modules.push_back(module_spec(robot.name, i, module));
         setup.links.push_back(
-            {robot.name + ".bluetooth", {robot.name + ".pic", "uart1"}, {kNode, robot.name}, kBaud});
+            {robot.name + ".bluetooth", {robot.name + ".pic", "uart1"}, {kNode, robot.name}, kBluetoothBaud});
         if (module.computer.empty()) continue;
         const std::string computer = robot.name + ".computer";
         spec.computers.push_back(computer_spec(computer, i, module));
-        add_outside(setup, computer, module.computer, kBaud, {kNode, computer}, kBaud, request);
+        add_outside(setup, computer, module.computer, kBluetoothBaud, {kNode, computer}, kBluetoothBaud,
+                    request);
     }
     const scenarios::BluetoothMedium& air = scenario.bluetooth;
     spec.name = kNode;

@@ -16,7 +16,7 @@ namespace {
 using scenarios::TamBoard;
 using scenarios::XBeeModule;
 
-constexpr double kBaud = 9600.0;  // BD = 3, nominal rate of the lines to modules
+constexpr double kRadioBaud = 9600.0;  // BD = 3, nominal rate of the lines to modules
 
 /// Between a module's microcontroller and its transceiver. More than nothing, so that neither waits for the
 /// other where both are due at the same time.
@@ -58,7 +58,7 @@ void add_tam_module(RunSetup& setup, radio::EtherSpec& ether, const TamBoard& ta
     xbee::ModuleSpec spec = module_spec(setup, node, tam.xbee, tam.start);
     spec.pins = ids_of(tam::signals());
     add_free(setup, node, std::move(spec));
-    setup.links.push_back({node, {board, "xbee"}, {node, "uart"}, nominal(kBaud)});
+    setup.links.push_back({node, {board, "xbee"}, {node, "uart"}, nominal(kRadioBaud)});
     cosim::LinkSpec pins{tam.name + ".pins", {board, "pins"}, {node, "pins"}};
     pins.signal_names = names_of(tam::signals());
     setup.links.push_back(pins);
@@ -81,7 +81,7 @@ void add_coordinator(RunSetup& setup, radio::EtherSpec& ether, const RunRequest&
         spec.program.env = {
             {"PUCKLOOP_SCENARIO_FOLDER", full_path(setup.scenario.file).parent_path().string()}};
         setup.nodes.push_back({computer, {std::move(spec)}});
-        setup.links.push_back({"coordinator.uart", {computer, "uart"}, {node, "uart"}, nominal(kBaud)});
+        setup.links.push_back({"coordinator.uart", {computer, "uart"}, {node, "uart"}, nominal(kRadioBaud)});
     }
     add_air(setup, ether, "coordinator", place.x, place.y);
 }

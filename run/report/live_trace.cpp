@@ -23,7 +23,7 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr int kLookEvery = 200;  // ms, whether the user has interrupted a wait
+constexpr int kPollMilliseconds = 200;  // ms, whether the user has interrupted a wait
 
 /// A pipe without a reader reports it by EPIPE only, in this thread; children keep their signals.
 class NoSigpipe {
@@ -92,7 +92,7 @@ class LiveTrace::Pipe : public std::streambuf {
         const char* at = pbase();
         while (at < pptr() && !gone_) {
             pollfd ready{descriptor_, POLLOUT, 0};
-            const int count = poll(&ready, 1, kLookEvery);
+            const int count = poll(&ready, 1, kPollMilliseconds);
             if (count == 0 && interrupted_ != nullptr && *interrupted_ != 0) gone_ = true;
             if (count <= 0) continue;
             // A pipe that is ready takes so much without blocking.

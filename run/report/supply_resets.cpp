@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kShown = 10;  ///< lines on the terminal
+constexpr std::size_t kShownResets = 10;  ///< lines on the terminal
 
 /// Causes in a node's `resets`, as dsPICs and AVRs give them.
 const std::map<std::string, std::string> kCauses{{"BOR", "brown-out (BOR)"},
@@ -22,7 +22,7 @@ const std::map<std::string, std::string> kCauses{{"BOR", "brown-out (BOR)"},
                                                  {"brown-out", "brown-out (BORF)"},
                                                  {"power-on", "power-on (PORF)"}};
 
-std::string place_of(const json& reset) {
+std::string place_of_reset(const json& reset) {
     std::string text = reset.at("pc").get<std::string>();
     if (reset.contains("symbol")) text += " in " + reset["symbol"].get<std::string>();
     return text;
@@ -36,7 +36,7 @@ void add_lines(const std::string& board, const json& resets, std::vector<std::st
             by_cause[cause->second].push_back(&resets[i]);
     for (const auto& [cause, list] : by_cause)
         lines.push_back(fmt::format("reset: {}, {} {}, first at pc {} ({:.6f} s)", board, cause,
-                                    times_text(list.size()), place_of(*list.front()),
+                                    times_text(list.size()), place_of_reset(*list.front()),
                                     list.front()->at("time_s").get<double>()));
 }
 
@@ -49,10 +49,10 @@ std::string supply_resets_summary(const cosim::Outcome& outcome) {
         if (report.is_object() && report.contains("resets")) add_lines(node.name, report["resets"], lines);
     }
     std::string text;
-    for (std::size_t i = 0; i < lines.size() && i < kShown; ++i)
+    for (std::size_t i = 0; i < lines.size() && i < kShownResets; ++i)
         text += "\n" + lines[i];
-    if (lines.size() > kShown)
-        text += fmt::format("\nreset: and {} more in report.json", lines.size() - kShown);
+    if (lines.size() > kShownResets)
+        text += fmt::format("\nreset: and {} more in report.json", lines.size() - kShownResets);
     return text;
 }
 

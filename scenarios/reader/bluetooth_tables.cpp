@@ -13,7 +13,7 @@ namespace puckloop::scenarios {
 namespace {
 
 constexpr int kMostNumber = 9999;
-constexpr double kLongest = 86'400.0 * 30;  // s, as a run
+constexpr double kLatestAction = 86'400.0 * 30;  // s, as a run
 
 std::string read_word(Reader& reader, std::string_view key, const std::string& fallback, std::size_t most) {
     std::string text = reader.text(key, fallback);
@@ -59,7 +59,7 @@ BluetoothModule read_bluetooth_module(const std::string& file, const std::string
     if (module.computer.empty() && reader.has("connect"))
         reader.fail("connect", "no computer links with this robot", "computer = \"pty\"");
     module.connect = reader.quantity("connect", Dimension::Time, module.connect);
-    if (!(module.connect >= 0 && module.connect <= kLongest))
+    if (!(module.connect >= 0 && module.connect <= kLatestAction))
         reader.fail("connect", "connect is out of range", "0 s to 720 h");
     reader.finish();
     return module;

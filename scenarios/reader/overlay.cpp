@@ -15,8 +15,8 @@ namespace puckloop::scenarios {
 
 namespace {
 
-constexpr double kLongestDelay = 10.0;   // s, of [uart]
-constexpr double kMostClockError = 2e5;  // ppm, of [clock]
+constexpr double kLongestUartDelay = 10.0;  // s, of [uart]
+constexpr double kMostClockError = 2e5;     // ppm, of [clock]
 
 double probability(Reader& reader, const char* key) {
     const double value = reader.quantity(key, Dimension::Ratio, 0.0);
@@ -29,7 +29,7 @@ double probability(Reader& reader, const char* key) {
 void apply_uart(const std::string& file, const TomlValue& table, Scenario& scenario) {
     Reader reader(file, "uart", table);
     const double late = reader.quantity("command_delay", Dimension::Time, 0.0);
-    if (!(late >= 0 && late <= kLongestDelay))
+    if (!(late >= 0 && late <= kLongestUartDelay))
         reader.fail("command_delay", "command_delay is out of range", "0 to 10 s");
     const double commands = probability(reader, "command_loss"), answers = probability(reader, "answer_loss"),
                  cut = probability(reader, "answer_cut"), again = probability(reader, "answer_cut_again"),

@@ -11,24 +11,35 @@ namespace puckloop::scenarios {
 
 namespace {
 
-struct Unit {
+struct QuantityUnit {
     std::string_view name;
     Dimension dimension;
     double si;  ///< one of it, in the SI unit
 };
 
 constexpr std::array kUnits{
-    Unit{"s", Dimension::Time, 1.0},        Unit{"ms", Dimension::Time, 1e-3},
-    Unit{"us", Dimension::Time, 1e-6},      Unit{"min", Dimension::Time, 60.0},
-    Unit{"h", Dimension::Time, 3600.0},     Unit{"m", Dimension::Length, 1.0},
-    Unit{"cm", Dimension::Length, 1e-2},    Unit{"mm", Dimension::Length, 1e-3},
-    Unit{"rad", Dimension::Angle, 1.0},     Unit{"deg", Dimension::Angle, std::numbers::pi / 180.0},
-    Unit{"kg", Dimension::Mass, 1.0},       Unit{"g", Dimension::Mass, 1e-3},
-    Unit{"Hz", Dimension::Frequency, 1.0},  Unit{"kHz", Dimension::Frequency, 1e3},
-    Unit{"MHz", Dimension::Frequency, 1e6}, Unit{"V", Dimension::Voltage, 1.0},
-    Unit{"mV", Dimension::Voltage, 1e-3},   Unit{"N", Dimension::Force, 1.0},
-    Unit{"Nm", Dimension::Torque, 1.0},     Unit{"mNm", Dimension::Torque, 1e-3},
-    Unit{"%", Dimension::Ratio, 1e-2},      Unit{"ppm", Dimension::Ratio, 1e-6},
+    QuantityUnit{"s", Dimension::Time, 1.0},
+    QuantityUnit{"ms", Dimension::Time, 1e-3},
+    QuantityUnit{"us", Dimension::Time, 1e-6},
+    QuantityUnit{"min", Dimension::Time, 60.0},
+    QuantityUnit{"h", Dimension::Time, 3600.0},
+    QuantityUnit{"m", Dimension::Length, 1.0},
+    QuantityUnit{"cm", Dimension::Length, 1e-2},
+    QuantityUnit{"mm", Dimension::Length, 1e-3},
+    QuantityUnit{"rad", Dimension::Angle, 1.0},
+    QuantityUnit{"deg", Dimension::Angle, std::numbers::pi / 180.0},
+    QuantityUnit{"kg", Dimension::Mass, 1.0},
+    QuantityUnit{"g", Dimension::Mass, 1e-3},
+    QuantityUnit{"Hz", Dimension::Frequency, 1.0},
+    QuantityUnit{"kHz", Dimension::Frequency, 1e3},
+    QuantityUnit{"MHz", Dimension::Frequency, 1e6},
+    QuantityUnit{"V", Dimension::Voltage, 1.0},
+    QuantityUnit{"mV", Dimension::Voltage, 1e-3},
+    QuantityUnit{"N", Dimension::Force, 1.0},
+    QuantityUnit{"Nm", Dimension::Torque, 1.0},
+    QuantityUnit{"mNm", Dimension::Torque, 1e-3},
+    QuantityUnit{"%", Dimension::Ratio, 1e-2},
+    QuantityUnit{"ppm", Dimension::Ratio, 1e-6},
 };
 
 struct DimensionText {
@@ -64,7 +75,7 @@ DimensionText text_of(Dimension dimension) {
 
 std::string units_of(Dimension dimension) {
     std::string list;
-    for (const Unit& unit : kUnits)
+    for (const QuantityUnit& unit : kUnits)
         if (unit.dimension == dimension) list += fmt::format("{}{}", list.empty() ? "" : ", ", unit.name);
     return list;
 }
@@ -95,7 +106,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
         if (dimension == Dimension::Ratio || dimension == Dimension::Number) return value;
         throw QuantityError{fmt::format("'{}' has no unit", text), expected};
     }
-    for (const Unit& unit : kUnits) {
+    for (const QuantityUnit& unit : kUnits) {
         if (unit.name != unit_name) continue;
         if (unit.dimension == dimension) return value * unit.si;
         throw QuantityError{fmt::format("'{}' is {}", text, text_of(unit.dimension).noun), expected};

@@ -39,7 +39,7 @@ std::uint64_t read_address(Reader& reader, std::uint64_t fallback) {
 }
 
 /// Any AT parameters by name: parameters = { RR = 3, MT = 0 }.
-void read_parameters(Reader& reader, XBeeModule& module) {
+void read_module_parameters(Reader& reader, XBeeModule& module) {
     const TomlValue* table = reader.table("parameters");
     if (table == nullptr) return;
     Reader parameters(reader.file(), "parameters", *table);
@@ -70,7 +70,7 @@ void read_module(Reader& reader, XBeeModule& module) {
     module.parameters["CH"] = static_cast<std::uint32_t>(reader.integer("channel", 12, 11, 26));
     module.boot = reader.quantity("boot", Dimension::Time, module.boot);
     if (!(module.boot >= 0 && module.boot <= 10)) reader.fail("boot", "boot is out of range", "0 s to 10 s");
-    read_parameters(reader, module);
+    read_module_parameters(reader, module);
 }
 
 /// The computer with the coordinator's program; its files go to a folder of their own.

@@ -8,11 +8,11 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kCruise = 80.0;    // mm/s
-constexpr double kArrived = 12.0;   // cm: beside the other
-constexpr double kLeft = 20.0;      // cm: not beside it any more
-constexpr double kTouching = 45.0;  // cm: what is felt in its direction may be the neighbour
-constexpr std::uint8_t kAllLeds = 0xFF;
+constexpr double kAggregateCruise = 80.0;    // mm/s
+constexpr double kArrived = 12.0;            // cm: beside the other
+constexpr double kLeft = 20.0;               // cm: not beside it any more
+constexpr double kNeighbourTouching = 45.0;  // cm: what is felt in its direction may be the neighbour
+constexpr std::uint8_t kClusterLeds = 0xFF;
 
 bool nearer(const Neighbour& a, const Neighbour& b) {
     return a.range_cm < b.range_cm;
@@ -22,7 +22,7 @@ bool nearer(const Neighbour& a, const Neighbour& b) {
 
 bool Aggregate::beside(const Neighbour& neighbour) const {
     return neighbour.range_cm < (in_group_ ? kLeft : kArrived) ||
-           (neighbour.range_cm < kTouching && touches(wander_.above_offset(), neighbour.bearing));
+           (neighbour.range_cm < kNeighbourTouching && touches(wander_.above_offset(), neighbour.bearing));
 }
 
 /// The neighbour to go to: of a better group if there is one, otherwise the nearest.
@@ -52,9 +52,9 @@ Actuators Aggregate::step(const Sensors& sensors, double t) {
     in_group_ = goal != nullptr && beside(*goal);
     if (in_group_) {
         out = Actuators{};
-        out.ring_leds = kAllLeds;
+        out.ring_leds = kClusterLeds;
     } else if (goal != nullptr && !wander_.avoiding()) {
-        out = drive_towards(goal->bearing, kCruise);
+        out = drive_towards(goal->bearing, kAggregateCruise);
         out.ring_leds = led_towards(goal->bearing);
     }
     out.body_led = !sensors.battery_ok;

@@ -7,17 +7,17 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kCruise = 70.0;       // mm/s
-constexpr double kTurnGain = 45.0;     // mm/s per radian of bearing error
-constexpr double kMaximumTurn = 60.0;  // mm/s
-constexpr double kContrast = 40.0;     // counts between brightest and darkest: less is no direction at all
-constexpr double kDazzling = 3400.0;   // counts: so bright that the lamp is reached
+constexpr double kLightCruise = 70.0;       // mm/s
+constexpr double kLightTurnGain = 45.0;     // mm/s per radian of bearing error
+constexpr double kLightMaximumTurn = 60.0;  // mm/s
+constexpr double kContrast = 40.0;    // counts between brightest and darkest: less is no direction at all
+constexpr double kDazzling = 3400.0;  // counts: so bright that the lamp is reached
 constexpr double kBright =
     1500.0;                       // counts: it is near; its light weakens again when the robot gets below it
 constexpr double kPassed = 0.93;  // of the brightest so far
 constexpr double kAligned = 0.3;  // radians: the lamp is ahead
 constexpr double kGone = 0.5;     // of the brightest so far: the lamp or the robot was moved
-constexpr std::uint8_t kAllLeds = 0xFF;
+constexpr std::uint8_t kLightArrivedLeds = 0xFF;
 
 }  // namespace
 
@@ -34,10 +34,10 @@ Actuators DriveToLight::step(const Sensors& sensors, double t) {
     watch_arrival(*brightest, std::abs(bearing) < kAligned);
 
     const Actuators wandering = wander_.step(sensors, t);
-    if (arrived_) return {.ring_leds = kAllLeds, .body_led = true};
+    if (arrived_) return {.ring_leds = kLightArrivedLeds, .body_led = true};
     if (wander_.avoiding() || *brightest - *darkest < kContrast) return wandering;
-    const double turn = std::clamp(kTurnGain * bearing, -kMaximumTurn, kMaximumTurn);
-    const double forward = kCruise * std::max(0.0, std::cos(bearing));
+    const double turn = std::clamp(kLightTurnGain * bearing, -kLightMaximumTurn, kLightMaximumTurn);
+    const double forward = kLightCruise * std::max(0.0, std::cos(bearing));
     return {.left_mm_s = forward - turn, .right_mm_s = forward + turn, .front_led = true};
 }
 

@@ -10,12 +10,12 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kSpeed = 60.0;    // mm/s, towards the light
-constexpr double kBeside = 22.0;   // cm: nearer than that the booth's sides are no obstacles
-constexpr double kAtMouth = 17.0;  // cm, from its lights: about to drive in
-constexpr double kAhead = 0.25;    // rad: it is straight ahead
-constexpr double kOnAxis = 0.6;    // of the way to the lights: it aims at their axis there
-constexpr double kSettle = 0.25;   // share of a new look in what is known of the axis
+constexpr double kSpeed = 60.0;       // mm/s, towards the light
+constexpr double kBeside = 22.0;      // cm: nearer than that the booth's sides are no obstacles
+constexpr double kAtMouth = 17.0;     // cm, from its lights: about to drive in
+constexpr double kAhead = 0.25;       // rad: it is straight ahead
+constexpr double kOnAxis = 0.6;       // of the way to the lights: it aims at their axis there
+constexpr double kAxisSettle = 0.25;  // share of a new look in what is known of the axis
 constexpr double kTellApart =
     28.0;                         // cm: nearer than that, a single light is one whose neighbours a side hides
 constexpr double kInLine = 0.3;   // rad: more aside at the mouth, it would meet a side
@@ -25,7 +25,7 @@ constexpr double kTurnSpread = 0.25;   // s: along walls it is not to turn round
 constexpr double kFar = 60.0;          // cm: a single pixel may be a light, or nothing
 constexpr double kLinger = 8.0;        // s in the dark behind a task, before a booth offers another
 constexpr double kLongestWait = 25.0;  // s
-constexpr double kForget = 1.5;        // s without seeing it
+constexpr double kBoothForget = 1.5;   // s without seeing it
 constexpr double kTurnAway = 2.1;      // s: half a turn
 constexpr double kTurnSpeed = 40.0;    // mm/s
 constexpr double kAskew = 0.8;         // s of turning aside: some 70 degrees
@@ -58,7 +58,7 @@ Actuators Seek::approach(const BoothLights* booth, const Sensors& sensors, const
                          double t) {
     if (booth == nullptr) {
         if (guessing_) return wrong_guess(t);
-        if (t - seen_ > kForget) enter(State::Search, t);
+        if (t - seen_ > kBoothForget) enter(State::Search, t);
         return wandering;
     }
     const ColouredSpot& lights = booth->middle;
@@ -79,7 +79,7 @@ Actuators Seek::approach(const BoothLights* booth, const Sensors& sensors, const
 Actuators Seek::serve(const Sensors& sensors, double t) {
     const Actuators out = serve_.step(sensors, t - since_);  // its time begins with it
     if (out.left_mm_s + out.right_mm_s >= 0) feel_edge();
-    if (serve_.waiting() && t - seen_ > kForget) enter(State::Retreat, t);  // out of another's way
+    if (serve_.waiting() && t - seen_ > kBoothForget) enter(State::Retreat, t);  // out of another's way
     if (!serve_.pausing()) return out;
     visits_ += serve_.visits();
     enter(serve_.visits() > 0 ? State::Turn : State::Sidestep, t);
@@ -118,10 +118,10 @@ Actuators Seek::retreat(double t) {
 
 /// What is known of the booth's axis.
 void Seek::look(const BoothLights& booth, double t) {
-    if (t - seen_ > kForget && state_ == State::Search) known_ = false;
+    if (t - seen_ > kBoothForget && state_ == State::Search) known_ = false;
     seen_ = t;
     if (!booth.askew) return;
-    askew_ = known_ ? askew_ + kSettle * (*booth.askew - askew_) : *booth.askew;
+    askew_ = known_ ? askew_ + kAxisSettle * (*booth.askew - askew_) : *booth.askew;
     known_ = true;
 }
 

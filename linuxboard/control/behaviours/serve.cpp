@@ -9,31 +9,31 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kCruise = 60.0;      // mm/s, towards the booth
-constexpr double kCreep = 25.0;       // mm/s, between its sides
-constexpr double kBack = 50.0;        // mm/s
-constexpr double kBackFor = 4.0;      // s: 20 cm
-constexpr double kStay = 8.0;         // s, without a camera
-constexpr double kDark = 0.8;         // s without light: the task is done
-constexpr double kWithin = 12.0;      // cm: a light of the booth that it stands in
-constexpr double kAhead = 1.2;        // rad to either side: a booth there is the one
-constexpr double kAlign = 3.0;        // s, of it
-constexpr double kStraight = 0.08;    // difference of the two front sensors, as a logarithm: a degree
-constexpr double kPause = 5.0;        // s
-constexpr double kPatience = 2.0;     // s before something that is no booth
-constexpr double kLongestWay = 15.0;  // s, without a camera
-constexpr double kLongestIn = 8.0;    // s, with one: it was seen from near
-constexpr double kAlongside = 60.0;   // counts: a side of the booth, 15 mm away
-constexpr double kAtBack = 900.0;     // counts: the booth's back, about 8 mm ahead
-constexpr double kNear = 120.0;       // counts: something about 5 cm away
-constexpr double kBlocked = 400.0;    // counts: about 2 cm ahead; the mouth of a booth, askew, is less
-constexpr double kTouching = 700.0;   // counts: the edge of a side, about 1 cm away
-constexpr double kBend = 3.0;         // mm/s: backs away from it in an arc, by some 13 degrees
-constexpr double kTurnGain = 12.0;    // mm/s for a factor of e between two sensors, standing
-constexpr double kSteerGain = 7.0;    // the same, driving
-constexpr double kMostTurn = 20.0;    // mm/s
-constexpr double kFaint = 40.0;       // counts: what is less shows nothing of the sides
-constexpr std::uint8_t kAllLeds = 0xFF;
+constexpr double kBoothCruise = 60.0;    // mm/s, towards the booth
+constexpr double kCreep = 25.0;          // mm/s, between its sides
+constexpr double kBack = 50.0;           // mm/s
+constexpr double kBackFor = 4.0;         // s: 20 cm
+constexpr double kStay = 8.0;            // s, without a camera
+constexpr double kDark = 0.8;            // s without light: the task is done
+constexpr double kWithin = 12.0;         // cm: a light of the booth that it stands in
+constexpr double kBoothAhead = 1.2;      // rad to either side: a booth there is the one
+constexpr double kAlign = 3.0;           // s, of it
+constexpr double kStraight = 0.08;       // difference of the two front sensors, as a logarithm: a degree
+constexpr double kPause = 5.0;           // s
+constexpr double kPatience = 2.0;        // s before something that is no booth
+constexpr double kLongestWay = 15.0;     // s, without a camera
+constexpr double kLongestIn = 8.0;       // s, with one: it was seen from near
+constexpr double kAlongside = 60.0;      // counts: a side of the booth, 15 mm away
+constexpr double kAtBack = 900.0;        // counts: the booth's back, about 8 mm ahead
+constexpr double kBoothNear = 120.0;     // counts: something about 5 cm away
+constexpr double kBlocked = 400.0;       // counts: about 2 cm ahead; the mouth of a booth, askew, is less
+constexpr double kSideTouching = 700.0;  // counts: the edge of a side, about 1 cm away
+constexpr double kBend = 3.0;            // mm/s: backs away from it in an arc, by some 13 degrees
+constexpr double kBoothTurnGain = 12.0;  // mm/s for a factor of e between two sensors, standing
+constexpr double kSteerGain = 7.0;       // the same, driving
+constexpr double kMostTurn = 20.0;       // mm/s
+constexpr double kFaint = 40.0;          // counts: what is less shows nothing of the sides
+constexpr std::uint8_t kServingLeds = 0xFF;
 
 }  // namespace
 
@@ -56,10 +56,10 @@ Actuators Serve::approach(const Sensors& sensors, double t) {
     const double right = between() ? above_[2] : above_[1], left = between() ? above_[5] : above_[6];
     if (between() && ahead > kAtBack) {
         enter(State::Stay, t);
-        return {.ring_leds = kAllLeds};
+        return {.ring_leds = kServingLeds};
     }
     const bool blocked = !between() && ahead > kBlocked;
-    const bool touching = !between() && std::max(right, left) > kTouching;
+    const bool touching = !between() && std::max(right, left) > kSideTouching;
     if (!blocked && !touching) blocked_since_ = -1;
     if ((blocked || touching) && blocked_since_ < 0) blocked_since_ = t;
     const bool stuck =
@@ -80,14 +80,14 @@ Actuators Serve::approach(const Sensors& sensors, double t) {
     }
     const double turn =
         std::clamp(kSteerGain * (std::log(right + kFaint) - std::log(left + kFaint)), -kMostTurn, kMostTurn);
-    const double speed = between() || touching ? kCreep : kCruise;
+    const double speed = between() || touching ? kCreep : kBoothCruise;
     return {.left_mm_s = speed - turn, .right_mm_s = speed + turn};
 }
 
 std::optional<Actuators> Serve::towards_light(const Sensors& sensors) const {
     for (const ColouredSpot& spot : *sensors.spots)
-        if (spot.colour != ColouredSpot::Colour::Red && std::abs(spot.bearing) < kAhead)
-            return drive_towards(spot.bearing, kCruise);
+        if (spot.colour != ColouredSpot::Colour::Red && std::abs(spot.bearing) < kBoothAhead)
+            return drive_towards(spot.bearing, kBoothCruise);
     return std::nullopt;
 }
 
@@ -102,7 +102,7 @@ bool Serve::done(const Sensors& sensors, double t) {
 Actuators Serve::align() const {
     const double askew = std::log(above_[7] + kFaint) - std::log(above_[0] + kFaint);
     if (std::abs(askew) < kStraight) return {};
-    const double turn = std::clamp(kTurnGain * askew, -kMostTurn, kMostTurn);
+    const double turn = std::clamp(kBoothTurnGain * askew, -kMostTurn, kMostTurn);
     return {.left_mm_s = -turn, .right_mm_s = turn};
 }
 
@@ -119,10 +119,10 @@ Actuators Serve::step(const Sensors& sensors, double t) {
     case State::Stay:
         if (t - since_ < kAlign) out = align();
         if (done(sensors, t)) enter(State::Leave, t);
-        out.ring_leds = kAllLeds;
+        out.ring_leds = kServingLeds;
         break;
     case State::Leave:
-        if (t - since_ >= kBackFor || behind > kNear)
+        if (t - since_ >= kBackFor || behind > kBoothNear)
             enter(State::Pause, t);
         else
             out = {.left_mm_s = -kBack - bend_, .right_mm_s = -kBack + bend_};

@@ -7,11 +7,11 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kCruise = 80.0;       // mm/s
-constexpr double kTurn = 40.0;         // mm/s, both wheels, opposite: 1.5 rad/s
-constexpr double kNear = 120.0;        // counts: a wall about 5 cm ahead
-constexpr double kClear = 60.0;        // counts: turn until less than this
-constexpr double kShortestTurn = 0.3;  // s
+constexpr double kWanderCruise = 80.0;  // mm/s
+constexpr double kTurn = 40.0;          // mm/s, both wheels, opposite: 1.5 rad/s
+constexpr double kWallNear = 120.0;     // counts: a wall about 5 cm ahead
+constexpr double kClear = 60.0;         // counts: turn until less than this
+constexpr double kShortestTurn = 0.3;   // s
 constexpr double kGoldenRatio = 0.6180339887;
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr double kGoldenRatio = 0.6180339887;
 std::array<double, 8> ProximityBaseline::above_offset(const std::array<double, 8>& proximity) {
     std::array<double, 8> above{};
     for (std::size_t i = 0; i < proximity.size(); ++i) {
-        offset_[i] = learnt_ ? std::min(offset_[i], proximity[i]) : std::min(proximity[i], kNear);
+        offset_[i] = learnt_ ? std::min(offset_[i], proximity[i]) : std::min(proximity[i], kWallNear);
         above[i] = proximity[i] - offset_[i];
     }
     learnt_ = true;
@@ -31,7 +31,7 @@ Actuators Wander::step(const Sensors& sensors, double t) {
     const std::array<double, 8>& p = above_;
     const double right = std::max({p[0], p[1], p[2] / 3});  // a wall alongside matters less than one ahead
     const double left = std::max({p[7], p[6], p[5] / 3});
-    if (turning_ == 0 && std::max(left, right) > kNear) {
+    if (turning_ == 0 && std::max(left, right) > kWallNear) {
         turning_ = left > right ? -1 : 1;
         ++turns_;
         turn_at_least_ = t + kShortestTurn + turn_spread_ * std::fmod(kGoldenRatio * turns_, 1.0);
@@ -40,8 +40,8 @@ Actuators Wander::step(const Sensors& sensors, double t) {
     }
     Actuators out;
     if (turning_ == 0) {
-        out.left_mm_s = kCruise;
-        out.right_mm_s = kCruise;
+        out.left_mm_s = kWanderCruise;
+        out.right_mm_s = kWanderCruise;
     } else {
         out.left_mm_s = -turning_ * kTurn;
         out.right_mm_s = turning_ * kTurn;

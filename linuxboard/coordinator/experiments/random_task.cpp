@@ -4,9 +4,9 @@ namespace puckloop::coordinator {
 
 namespace {
 
-constexpr double kLongest = 1e6;  // s
+constexpr double kLongestTask = 1e6;  // s
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kTaskParameters[] = {
     {"tasks", "green,blue", "names of the tasks, drawn with equal chances"},
     {"colors", "001900,000019", "of the LEDs while a task is offered, rrggbb, one per task"},
     {"durations", "5,20", "s of work, one per task"},
@@ -75,14 +75,14 @@ class RandomTaskController : public Controller {
 }  // namespace
 
 std::span<const Parameter> random_task_parameters() {
-    return kParameters;
+    return kTaskParameters;
 }
 
 RandomTaskSettings read_random_task(const Parameters& parameters) {
     RandomTaskSettings settings;
     const std::vector<std::string> names = parameters.list("tasks");
     const std::vector<Color> colors = parameters.colors("colors");
-    const std::vector<double> durations = parameters.numbers("durations", 0.0, kLongest);
+    const std::vector<double> durations = parameters.numbers("durations", 0.0, kLongestTask);
     const std::string expected = std::to_string(names.size()) + ", one per task";
     if (colors.size() != names.size())
         parameters.fail("colors", "has " + std::to_string(colors.size()) + " values", expected);
@@ -101,7 +101,7 @@ RandomTaskSettings read_random_task(const Parameters& parameters) {
         }
     }
     settings.busy = parameters.color("busy-color");
-    settings.dead_time = parameters.number("dead-time", 0.0, kLongest);
+    settings.dead_time = parameters.number("dead-time", 0.0, kLongestTask);
     settings.seed = parameters.whole("seed");
     return settings;
 }

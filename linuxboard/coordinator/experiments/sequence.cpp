@@ -6,9 +6,9 @@ namespace puckloop::coordinator {
 
 namespace {
 
-constexpr double kLongest = 1e6;  // s
+constexpr double kLongestStep = 1e6;  // s
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kSequenceParameters[] = {
     {"order", "TAM00,TAM01", "the TAMs, in the order in which their tasks have to be done"},
     {"colors", "001900,000019", "of the LEDs while a TAM has its turn, rrggbb, one per TAM"},
     {"durations", "5,5", "s of work, one per TAM"},
@@ -22,14 +22,14 @@ constexpr Parameter kParameters[] = {
 }  // namespace
 
 std::span<const Parameter> sequence_parameters() {
-    return kParameters;
+    return kSequenceParameters;
 }
 
 SequenceSettings read_sequence(const Parameters& parameters) {
     SequenceSettings settings;
     const std::vector<std::string> order = parameters.list("order");
     const std::vector<Color> colors = parameters.colors("colors");
-    const std::vector<double> durations = parameters.numbers("durations", 0.0, kLongest);
+    const std::vector<double> durations = parameters.numbers("durations", 0.0, kLongestStep);
     const std::string expected = std::to_string(order.size()) + ", one per TAM";
     for (std::size_t i = 0; i < order.size(); ++i) {
         const std::string& name = order[i];
@@ -46,8 +46,8 @@ SequenceSettings read_sequence(const Parameters& parameters) {
     for (std::size_t i = 0; i < order.size(); ++i)
         settings.stages.push_back({order[i], colors[i], durations[i]});
     settings.busy = parameters.color("busy-color");
-    settings.dead_time = parameters.number("dead-time", 0.0, kLongest);
-    settings.time_limit = parameters.number("time-limit", 0.0, kLongest);
+    settings.dead_time = parameters.number("dead-time", 0.0, kLongestStep);
+    settings.time_limit = parameters.number("time-limit", 0.0, kLongestStep);
     const std::string mistake = parameters.text("on-mistake");
     if (mistake != "restart" && mistake != "ignore")
         parameters.fail("on-mistake", "'" + mistake + "' cannot be used", "restart or ignore");

@@ -20,13 +20,7 @@ using cosim::kSecond;
 using cosim::Time;
 
 namespace {
-/// Of read(): one is filled, one waits for the next frame, one is being read.
-constexpr std::size_t kReadBuffers = 3;
 constexpr std::size_t kRgbBytes = 3;
-
-bool is_capture(std::uint32_t type) {
-    return type == V4L2_BUF_TYPE_VIDEO_CAPTURE;
-}
 
 /// Not for an open file of lower priority than another one's.
 bool changes_device(std::uint32_t request) {
@@ -48,6 +42,10 @@ bool changes_device(std::uint32_t request) {
     }
 }
 }  // namespace
+
+bool is_capture(std::uint32_t type) {
+    return type == V4L2_BUF_TYPE_VIDEO_CAPTURE;
+}
 
 VideoDevice::VideoDevice(const CameraSpec& spec, std::size_t number, Time uptime, Scenery& scenery,
                          char* memory, std::int64_t clock_error)

@@ -31,6 +31,12 @@ namespace puckloop::linuxboard {
 
 struct CameraSpec;
 
+/// Buffers of read(): one is filled, one waits for the next frame, one is being read.
+inline constexpr std::uint32_t kReadBuffers = 3;
+
+/// Whether a buffer's or a format's `type` is that of frames taken, the only ones here.
+bool is_capture(std::uint32_t type);
+
 class VideoDevice {
   public:
     /// `number` of the camera among the board's; `memory`: its part of the shared memory, wire::kVideoSize

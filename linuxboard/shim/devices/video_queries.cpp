@@ -22,15 +22,10 @@ namespace {
 constexpr std::uint32_t kCapabilities =
     V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING | V4L2_CAP_READWRITE | V4L2_CAP_EXT_PIX_FORMAT;
 constexpr std::uint32_t kKernel = 5 << 16 | 10 << 8;  // the driver's version: that of its kernel
-constexpr std::uint32_t kReadBuffers = 3;
 
 template <std::size_t Size>
 void put_text(__u8 (&field)[Size], const std::string& text) {
     std::snprintf(reinterpret_cast<char*>(field), Size, "%s", text.c_str());
-}
-
-bool is_capture(std::uint32_t type) {
-    return type == V4L2_BUF_TYPE_VIDEO_CAPTURE;
 }
 
 v4l2_rect whole_sensor() {

@@ -4,7 +4,7 @@ namespace puckloop::linuxboard {
 
 namespace {
 
-constexpr char kEscape = '\x1b', kBell = '\a', kDelete = '\x7f';
+constexpr char kEscape = '\x1b', kBell = '\a', kDeleteCharacter = '\x7f';
 
 bool within(char c, char low, char high) {
     return c >= low && c <= high;
@@ -39,7 +39,7 @@ std::string text_of(std::string_view line) {
             continue;
         }
         const char c = line[at++];
-        if (static_cast<unsigned char>(c) >= ' ' && c != kDelete)
+        if (static_cast<unsigned char>(c) >= ' ' && c != kDeleteCharacter)
             text += c;
         else if (c == '\t')
             text += ' ';

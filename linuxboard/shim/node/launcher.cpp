@@ -36,7 +36,7 @@ constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
 constexpr rlim_t kUsualDescriptors = 1024;
 constexpr rlim_t kFewestDescriptors = 32;  // of a program; with fewer it is not started
 constexpr rlim_t kPrivateDescriptors = 5;  // link and page; on their way there a copy of each, and the report
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
 
 [[noreturn]] void fail(const std::string& what) {
     const int error = errno;
@@ -199,7 +199,7 @@ void Launcher::prepare_page() {
     page_ = new (memory) wire::Page;
     page_->real_time = spec_.real_time ? 1 : 0;
     page_->ask_always = spec_.ask_always ? 1 : 0;
-    page_->epoch = spec_.epoch_s * kNanosecondsPerSecond;
+    page_->epoch = spec_.epoch_s * kNanosecondsOfSecond;
     page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
     page_->clock_error = clock_error_of(spec_);
     page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();

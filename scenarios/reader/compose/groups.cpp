@@ -19,7 +19,7 @@ namespace puckloop::scenarios {
 
 namespace {
 
-constexpr std::int64_t kMostUnits = 1000;
+constexpr std::int64_t kMostOfGroup = 1000;
 constexpr std::string_view kNumber = "{n}";
 /// Keys of a group that are not its units'.
 constexpr auto kGroupKeys =
@@ -46,9 +46,9 @@ TomlValue value_of(auto data, const TomlValue& from) {
 }
 
 /// Draws the values of one unit: each key by a stream of its own, so that another key changes none of them.
-class Unit {
+class CountedUnit {
   public:
-    Unit(const std::string& file, std::string name, std::int64_t number, std::uint64_t seed)
+    CountedUnit(const std::string& file, std::string name, std::int64_t number, std::uint64_t seed)
         : file_(file), name_(std::move(name)), number_(number), seed_(seed) {}
 
     const std::string& name() const { return name_; }
@@ -114,7 +114,7 @@ class Group {
         for (std::int64_t i = 0; i < count; ++i) {
             const std::string name =
                 names_.empty() ? with_number(name_, first + i) : names_[static_cast<std::size_t>(i)];
-            const Unit unit(file_, name, first + i, scenario_.seed);
+            const CountedUnit unit(file_, name, first + i, scenario_.seed);
             TomlTable described;
             for (const auto& [key, value] : std::get<TomlTable>(table_.data))
                 if (!has(kGroupKeys, key)) described.emplace_back(key, unit.draw(value, key));
@@ -128,18 +128,18 @@ class Group {
         const auto places = placement.count();
         if (!names_.empty()) {
             const auto count = static_cast<std::int64_t>(names_.size());
-            if (count > kMostUnits) reader_.fail("names", "there are too many names", "at most 1000");
+            if (count > kMostOfGroup) reader_.fail("names", "there are too many names", "at most 1000");
             if (places && names_.size() != *places)
                 reader_.fail("names", fmt::format("{} names for {} positions", count, *places), "as many");
             return count;
         }
-        const std::int64_t most = places ? static_cast<std::int64_t>(*places) : kMostUnits;
+        const std::int64_t most = places ? static_cast<std::int64_t>(*places) : kMostOfGroup;
         const std::int64_t count = reader_.integer("count", places ? most : 0, 1, most);
         if (count == 0) reader_.fail_missing("count", "count = 20");
         return count;
     }
 
-    void place(const Unit& unit, std::size_t index, std::size_t count, const TomlTable& described,
+    void place(const CountedUnit& unit, std::size_t index, std::size_t count, const TomlTable& described,
                Placement& placement, Occupied& occupied) {
         std::string obstacle;
         const std::size_t trials = placement.is_drawn() ? placement.max_trials() : 1;
@@ -166,7 +166,7 @@ class Group {
             placement.is_drawn() ? "fewer units, more room or more max_trials" : "places that are free");
     }
 
-    void add_pose(const UnitPose& pose, const Unit& unit, TomlTable& whole) const {
+    void add_pose(const UnitPose& pose, const CountedUnit& unit, TomlTable& whole) const {
         const auto length = [&](double metres) { return value_of(fmt::format("{:.17g} m", metres), table_); };
         whole.emplace_back("name", value_of(unit.name(), table_));
         whole.emplace_back(of_ == "robot" ? "position" : "centre",

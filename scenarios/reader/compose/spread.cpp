@@ -10,7 +10,7 @@ namespace puckloop::scenarios {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_item(std::string_view text) {
     while (!text.empty() && text.front() == ' ')
         text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ')
@@ -28,15 +28,15 @@ Quantity quantity_of(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), quantity.value);
     if (error != std::errc{} || !std::isfinite(quantity.value))
         throw SpreadError{fmt::format("'{}' is not a number", text), "\"normal(0, 15 ppm)\""};
-    quantity.unit = trimmed({end, static_cast<std::size_t>(text.data() + text.size() - end)});
+    quantity.unit = trimmed_item({end, static_cast<std::size_t>(text.data() + text.size() - end)});
     return quantity;
 }
 
-std::vector<std::string_view> split(std::string_view list) {
+std::vector<std::string_view> split_list(std::string_view list) {
     std::vector<std::string_view> parts;
     for (;;) {
         const auto comma = list.find(',');
-        parts.push_back(trimmed(list.substr(0, comma)));
+        parts.push_back(trimmed_item(list.substr(0, comma)));
         if (comma == std::string_view::npos) return parts;
         list.remove_prefix(comma + 1);
     }
@@ -70,7 +70,7 @@ std::optional<TomlValue> drawn(std::string_view text, RandomStream& random) {
     const std::string_view name = text.substr(0, open);
     const bool normal = name == "normal", uniform = name == "uniform";
     if (!normal && !uniform && name != "choice") return std::nullopt;
-    const auto parts = split(text.substr(open + 1, text.size() - open - 2));
+    const auto parts = split_list(text.substr(open + 1, text.size() - open - 2));
     if (!normal && !uniform) {
         if (parts.front().empty())
             throw SpreadError{"choice() has nothing to choose from", "\"choice(1, 2)\""};

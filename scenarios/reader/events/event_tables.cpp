@@ -19,12 +19,12 @@ using physics::Condition;
 using physics::Event;
 using physics::Verb;
 
-constexpr double kLongest = 86'400.0 * 30;  // s, as a run
+constexpr double kLatestEvent = 86'400.0 * 30;  // s, as a run
 constexpr std::int64_t kMostTimes = 1'000'000;
 
 /// To the microsecond.
 cosim::Time read_time(Reader& reader, std::string_view key, double seconds) {
-    if (!(seconds >= 0 && seconds <= kLongest))
+    if (!(seconds >= 0 && seconds <= kLatestEvent))
         reader.fail(key, fmt::format("{} is out of range", key), "0 s to 720 h");
     return std::llround(seconds * 1e6) * cosim::kMicrosecond;
 }
