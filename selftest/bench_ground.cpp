@@ -11,13 +11,12 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-using K = GroundKnobs;
 using Truths = std::vector<Truth>;
 
-constexpr double kRow = 0.1;        // s
-constexpr double kNoise = 3.0;      // counts
-constexpr double kFullScale = 967;  // where the sensors saturate
-constexpr double kSlope = 1e-4;     // m over which a change of grey is taken
+constexpr double kGroundRowTime = 0.1;    // s
+constexpr double kGroundNoise = 3.0;      // counts
+constexpr double kGroundFullScale = 967;  // where the sensors saturate
+constexpr double kSlope = 1e-4;           // m over which a change of grey is taken
 constexpr int kRunsOfAKind = 3;
 
 /// Drives over the printed floor: to and fro along the stripes' normal, a slanting line, stop and go.
@@ -30,19 +29,19 @@ std::vector<Stand> path(RandomStream& random, int shape, int repeat) {
                                         : third * (repeat + 0.2 + 0.2 * random.uniform());
     double speed = 0.0;
     for (int k = 0; k < 50; ++k) {
-        const double t = k * kRow;
+        const double t = k * kGroundRowTime;
         const double wanted = shape == 3 ? ((k / 6) % 2 == 0 ? 0.10 : 0.0) : 0.04 + 0.04 * shape;
-        const double acceleration = std::clamp((wanted - speed) / kRow, -1.0, 1.0);
+        const double acceleration = std::clamp((wanted - speed) / kGroundRowTime, -1.0, 1.0);
         stands.push_back({t, x, y, heading, speed, acceleration});
-        const double way = (speed + acceleration * kRow / 2) * kRow;
-        speed += acceleration * kRow;
+        const double way = (speed + acceleration * kGroundRowTime / 2) * kGroundRowTime;
+        speed += acceleration * kGroundRowTime;
         x += way * std::cos(heading);
         y += way * std::sin(heading);
     }
     return stands;
 }
 
-WrittenExperiment exact_ground(const K& knobs, std::uint64_t seed, const std::string&) {
+WrittenExperiment exact_ground(const GroundKnobs& knobs, std::uint64_t seed, const std::string&) {
     RandomStream random(seed, "paths");
     WrittenExperiment experiment;
     experiment.kind = "ground";
@@ -79,29 +78,31 @@ WrittenExperiment exact_ground(const K& knobs, std::uint64_t seed, const std::st
     return experiment;
 }
 
-void measure_ground(WrittenExperiment& experiment, const K&, const NoiseStyle& style, std::uint64_t seed) {
+void measure_ground(WrittenExperiment& experiment, const GroundKnobs&, const NoiseStyle& style,
+                    std::uint64_t seed) {
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
-        NoiseSeries noise(style, kNoise, RandomStream(seed, fmt::format("reading {}", r)));
+        NoiseSeries noise(style, kGroundNoise, RandomStream(seed, fmt::format("reading {}", r)));
         for (double& value : experiment.runs[r].column("reading").values)
-            value = std::clamp(std::round(value + noise.next()), 0.0, kFullScale);
+            value = std::clamp(std::round(value + noise.next()), 0.0, kGroundFullScale);
     }
 }
 
 }  // namespace
 
-const Rig<K>& ground_rig() {
-    static const Rig<K> rig{"ground",
-                            {{"reading", kNoise}},
-                            exact_ground,
-                            measure_ground,
-                            [](const GroundKnobs&, std::uint64_t, const std::string&) { return 0.0; }};
+const Rig<GroundKnobs>& ground_rig() {
+    static const Rig<GroundKnobs> rig{
+        "ground",
+        {{"reading", kGroundNoise}},
+        exact_ground,
+        measure_ground,
+        [](const GroundKnobs&, std::uint64_t, const std::string&) { return 0.0; }};
     return rig;
 }
 
 std::unique_ptr<Bench> ground_bench() {
     // clang-format off
-    return std::make_unique<BenchOf<K>>(ground_rig(), std::vector<HiddenEffect<K>>{
-        {36, "gain and offset", 1.0, false, [](K& k, double a, RandomStream r) {
+    return std::make_unique<BenchOf<GroundKnobs>>(ground_rig(), std::vector<HiddenEffect<GroundKnobs>>{
+        {36, "gain and offset", 1.0, false, [](GroundKnobs& k, double a, RandomStream r) {
             Truths truths;
             for (std::size_t i = 0; i < kGroundRow; ++i) {
                 k.gain[i] = 1 - 0.2 * a * r.uniform();
@@ -110,12 +111,12 @@ std::unique_ptr<Bench> ground_bench() {
                 truths.push_back({fmt::format("ground.offset{}", i), k.offset[i]});
             }
             return truths; }},
-        {37, "pitch while starting", 0.3, false, [](K& k, double a, RandomStream) { k.pitch = a; return Truths{{"ground.acceleration_tilt", a / (43.75 * 0.030)}}; }},
-        {38, "further ahead", 0.01, true, turned(&K::forward, "ground.forward_error"), {}, "", 0, "ground_position"},
-        {38, "lag", 0.3, false, turned(&K::lag, "ground.lag"), {}, "", 0, "ground_lag"},
-        {0, "weave of the floor", 60, false, turned(&K::weave)},
-        {0, "memory of the dark", 0.3, false, turned(&K::hysteresis)},
-        {0, "glare to the north", 60, false, [](K& k, double a, RandomStream) { k.glare = -a; return Truths{}; }},
+        {37, "pitch while starting", 0.3, false, [](GroundKnobs& k, double a, RandomStream) { k.pitch = a; return Truths{{"ground.acceleration_tilt", a / (43.75 * 0.030)}}; }},
+        {38, "further ahead", 0.01, true, turned(&GroundKnobs::forward, "ground.forward_error"), {}, "", 0, "ground_position"},
+        {38, "lag", 0.3, false, turned(&GroundKnobs::lag, "ground.lag"), {}, "", 0, "ground_lag"},
+        {0, "weave of the floor", 60, false, turned(&GroundKnobs::weave)},
+        {0, "memory of the dark", 0.3, false, turned(&GroundKnobs::hysteresis)},
+        {0, "glare to the north", 60, false, [](GroundKnobs& k, double a, RandomStream) { k.glare = -a; return Truths{}; }},
     });
     // clang-format on
 }

@@ -12,25 +12,24 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-using K = MicrophoneKnobs;
 using Truths = std::vector<Truth>;
 
-constexpr double kNoise = 5.0;  // counts
-constexpr double kFullScale = 4095;
-constexpr double kRow = 0.1;        // s
-constexpr double kPause = 20;       // s between runs
-constexpr double kAmplitude = 400;  // counts at 0.1 m
-constexpr int kRepeats = 3;
+constexpr double kMicrophoneNoise = 5.0;  // counts
+constexpr double kMicrophoneFullScale = 4095;
+constexpr double kMicrophoneRow = 0.1;   // s
+constexpr double kMicrophonePause = 20;  // s between runs
+constexpr double kAmplitude = 400;       // counts at 0.1 m
+constexpr int kMicrophoneRepeats = 3;
 constexpr std::array<double, 8> kDistances{0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4, 0.6};
 constexpr std::array<double, kMicrophones> kAxes3{-1.05, 1.05, std::numbers::pi};  // rad: right, left, rear
 
-WrittenExperiment exact_microphone(const K& knobs, std::uint64_t seed, const std::string&) {
+WrittenExperiment exact_microphone(const MicrophoneKnobs& knobs, std::uint64_t seed, const std::string&) {
     RandomStream random(seed, "loudspeaker");
     WrittenExperiment experiment;
     experiment.kind = "microphone";
     experiment.instruments = {{"level", 0, 4095, 1}};
     double clock = 5.0;
-    for (int repeat = 0; repeat < kRepeats; ++repeat)
+    for (int repeat = 0; repeat < kMicrophoneRepeats; ++repeat)
         for (const char* part : {"distances", "turn", "motors", "windows"}) {
             WrittenRun run;
             run.conditions = {{"part", part}};
@@ -55,7 +54,7 @@ WrittenExperiment exact_microphone(const K& knobs, std::uint64_t seed, const std
                             l.window = k % 2 == 0 ? 100 : 50;
                         }
                         plan.push_back(l);
-                        clock += kRow;
+                        clock += kMicrophoneRow;
                     }
             for (std::size_t k = 0; k < plan.size(); ++k) {
                 Listening& l = plan[k];
@@ -70,44 +69,45 @@ WrittenExperiment exact_microphone(const K& knobs, std::uint64_t seed, const std
                 run.column("motor_speed", "steps/s").values.push_back(l.motors);
                 run.column("order").values.push_back(static_cast<double>(experiment.runs.size() + 1));
             }
-            clock += kPause;
+            clock += kMicrophonePause;
             experiment.runs.push_back(std::move(run));
         }
     return experiment;
 }
 
-void measure_microphone(WrittenExperiment& experiment, const K&, const NoiseStyle& style,
+void measure_microphone(WrittenExperiment& experiment, const MicrophoneKnobs&, const NoiseStyle& style,
                         std::uint64_t seed) {
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
-        NoiseSeries noise(style, kNoise, RandomStream(seed, fmt::format("level {}", r)));
+        NoiseSeries noise(style, kMicrophoneNoise, RandomStream(seed, fmt::format("level {}", r)));
         for (double& value : experiment.runs[r].column("level").values)
-            value = std::clamp(std::round(value + noise.next()), 0.0, kFullScale);
+            value = std::clamp(std::round(value + noise.next()), 0.0, kMicrophoneFullScale);
     }
 }
 
 }  // namespace
 
-const Rig<K>& microphone_rig() {
-    static const Rig<K> rig{"microphone",
-                            {{"level", kNoise}},
-                            exact_microphone,
-                            measure_microphone,
-                            [](const MicrophoneKnobs&, std::uint64_t, const std::string&) { return 0.0; }};
+const Rig<MicrophoneKnobs>& microphone_rig() {
+    static const Rig<MicrophoneKnobs> rig{
+        "microphone",
+        {{"level", kMicrophoneNoise}},
+        exact_microphone,
+        measure_microphone,
+        [](const MicrophoneKnobs&, std::uint64_t, const std::string&) { return 0.0; }};
     return rig;
 }
 
 std::unique_ptr<Bench> microphone_bench() {
     // clang-format off
-    return std::make_unique<BenchOf<K>>(microphone_rig(), std::vector<HiddenEffect<K>>{
-        {41, "gain spread", 0.3, false, [](K& k, double a, RandomStream r) {
+    return std::make_unique<BenchOf<MicrophoneKnobs>>(microphone_rig(), std::vector<HiddenEffect<MicrophoneKnobs>>{
+        {41, "gain spread", 0.3, false, [](MicrophoneKnobs& k, double a, RandomStream r) {
             return scattered(k.gain, "microphone.gain", [&] { return std::exp(a * r.normal()); }); }, {}, "", 0, "microphone_gain"},
-        {41, "own noise", 40, false, turned(&K::self_noise, "microphone.self_noise"), {}, "", 0, "microphone_self_noise"},
-        {41, "fall with distance", 0.4, true, [](K& k, double a, RandomStream) { k.exponent = a; return Truths{{"microphone.exponent", 1 + a}}; }, {}, "", 0, "microphone_fall"},
-        {41, "directivity", 0.5, false, turned(&K::directivity, "microphone.directivity"), {}, "", 0, "microphone_directivity"},
-        {42, "short window", 0.9, false, turned(&K::short_window, "microphone.window_lost")},
-        {33, "warm-up drift", 0.3, true, turned(&K::warm, "microphone.warmup_gain")},
-        {0, "room mode", 0.5, false, turned(&K::node)},
-        {0, "spells of loss", 0.5, false, turned(&K::burst)},
+        {41, "own noise", 40, false, turned(&MicrophoneKnobs::self_noise, "microphone.self_noise"), {}, "", 0, "microphone_self_noise"},
+        {41, "fall with distance", 0.4, true, [](MicrophoneKnobs& k, double a, RandomStream) { k.exponent = a; return Truths{{"microphone.exponent", 1 + a}}; }, {}, "", 0, "microphone_fall"},
+        {41, "directivity", 0.5, false, turned(&MicrophoneKnobs::directivity, "microphone.directivity"), {}, "", 0, "microphone_directivity"},
+        {42, "short window", 0.9, false, turned(&MicrophoneKnobs::short_window, "microphone.window_lost")},
+        {33, "warm-up drift", 0.3, true, turned(&MicrophoneKnobs::warm, "microphone.warmup_gain")},
+        {0, "room mode", 0.5, false, turned(&MicrophoneKnobs::node)},
+        {0, "spells of loss", 0.5, false, turned(&MicrophoneKnobs::burst)},
     });
     // clang-format on
 }

@@ -10,8 +10,8 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kSend = 0.1;  // s between two commands of the host
-constexpr double kAxle = physics::kAxleLength;
+constexpr double kCommandEvery = 0.1;  // s between two commands of the host
+constexpr double kDesignAxle = physics::kAxleLength;
 constexpr double kLoad = 0.2;  // kg, in one line
 constexpr double kRest = 0.5;  // s before and after
 
@@ -26,10 +26,10 @@ MotionScript script_of(const std::vector<Leg>& legs, double heading) {
     script.heading = heading;
     double t = 0.0;
     for (const Leg& leg : legs) {
-        const auto sends = std::max(1L, std::lround(leg.seconds / kSend));
+        const auto sends = std::max(1L, std::lround(leg.seconds / kCommandEvery));
         for (long k = 0; k < sends; ++k)
-            script.commands.push_back({t + static_cast<double>(k) * kSend, leg.left, leg.right});
-        t += static_cast<double>(sends) * kSend;
+            script.commands.push_back({t + static_cast<double>(k) * kCommandEvery, leg.left, leg.right});
+        t += static_cast<double>(sends) * kCommandEvery;
     }
     script.seconds = t;
     return script;
@@ -45,7 +45,7 @@ std::vector<Leg> square(double sense) {
     constexpr double kSpeed = 500, kTurn = 250, kSide = 0.15;
     std::vector<Leg> legs;
     const double side = kSide / (kSpeed * physics::kMetresPerStep);
-    const double corner = std::numbers::pi / 2 * kAxle / 2 / (kTurn * physics::kMetresPerStep);
+    const double corner = std::numbers::pi / 2 * kDesignAxle / 2 / (kTurn * physics::kMetresPerStep);
     for (int k = 0; k < 4; ++k) {
         legs.push_back({side, kSpeed, kSpeed});
         legs.push_back({corner, -sense * kTurn, sense * kTurn});

@@ -15,13 +15,13 @@ constexpr double kPause = 40;   // s between runs
 constexpr double kGrey = 0.45;  // stated reflectivity of the grey wall
 constexpr double kLamp = 1.0;   // ambient level
 constexpr int kRepeats = 2;
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDesignDegree = std::numbers::pi / 180;
 constexpr std::array<double, 12> kGaps{2, 4, 7, 10, 14, 18, 24, 31, 40, 52, 66, 90};  // mm
 constexpr std::array<std::size_t, 4> kSome{0, 2, 5, 7};
 
-class Plan {
+class ProximityPlan {
   public:
-    explicit Plan(RandomStream& random) : random_(random) {}
+    explicit ProximityPlan(RandomStream& random) : random_(random) {}
 
     void begin(const char* surface, const char* light, const char* motors, double speed) {
         runs_.push_back({{{"surface", surface}, {"light", light}, {"motors", motors}}, {}});
@@ -59,7 +59,7 @@ class Plan {
     void oblique(std::size_t sensor) {
         for (int k = -6; k <= 6; ++k)
             for (int again = 0; again < 2; ++again)
-                read(sensor, 0.015, k * 10 * kDegree, 0.0);
+                read(sensor, 0.015, k * 10 * kDesignDegree, 0.0);
     }
     void approach(std::size_t sensor, double speed) {
         for (double gap = 0.08; gap > 0.002; gap -= speed * kRow)
@@ -77,7 +77,7 @@ class Plan {
 }  // namespace
 
 std::vector<PlannedScenes> planned_scenes(RandomStream& random, bool one_object) {
-    Plan plan(random);
+    ProximityPlan plan(random);
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
         plan.begin("white", "dark", "off", 0);
         if (one_object) {

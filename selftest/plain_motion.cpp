@@ -11,14 +11,14 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kTick = 1e-3;      // s
-constexpr double kSameTime = 1e-9;  // s
+constexpr double kClockTick = 1e-3;  // s
+constexpr double kSameTime = 1e-9;   // s
 constexpr double kRadius = physics::kWheelRadius, kAxle = physics::kAxleLength;
 using physics::kStepsPerTurn;
-constexpr double kGravity = 9.81;    // m/s2
-constexpr double kSlipGroup = 4.0;   // steps: the coils' pattern repeats
-constexpr double kPatchEdge = 0.15;  // m
-constexpr double kFullSpeed = 1000;  // steps/s: the firmware's clamp
+constexpr double kGravityOnFloor = 9.81;  // m/s2
+constexpr double kSlipGroup = 4.0;        // steps: the coils' pattern repeats
+constexpr double kPatchEdge = 0.15;       // m
+constexpr double kFullSpeed = 1000;       // steps/s: the firmware's clamp
 
 /// A command on its way to the motors.
 struct Arrival {
@@ -46,7 +46,7 @@ struct Wheel {
     /// By a tick, in the last `share_of_tick` of which the newest command is in force.
     double advance(const MotionKnobs& k, double radius, double steps_per_second, double share_of_tick,
                    RandomStream& chance) {
-        const double wanted = steps_per_second * kTick;
+        const double wanted = steps_per_second * kClockTick;
         steps += wanted;
         // The rotor jumps to the next step as it is counted: counter and wheel part by half a step at most,
         // in either direction alike, so that the counter adds no play of its own.
@@ -64,10 +64,10 @@ struct Wheel {
             real * 2 * std::numbers::pi * radius * (1.0 + k.eccentricity * std::sin(turned)) / kStepsPerTurn;
         const double before = geared;
         geared = std::clamp(geared, motor - k.backlash / 2, motor + k.backlash / 2);
-        const double rim = (geared - before) / kTick;
-        const double most = k.friction * kGravity * kTick * share_of_tick;
+        const double rim = (geared - before) / kClockTick;
+        const double most = k.friction * kGravityOnFloor * kClockTick * share_of_tick;
         ground += std::clamp(rim - ground, -most, most);
-        return ground - skipped * 2 * std::numbers::pi * radius / kStepsPerTurn / kTick;
+        return ground - skipped * 2 * std::numbers::pi * radius / kStepsPerTurn / kClockTick;
     }
 };
 
@@ -95,17 +95,17 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
     };
     std::vector<Pose> past;
     std::vector<MotionRow> rows;
-    const auto per_row = static_cast<long>(std::lround(period / kTick));
-    const auto ticks = static_cast<long>(std::lround(script.seconds / kTick));
-    const auto delay = static_cast<std::size_t>(std::lround(k.tracker_delay / kTick));
+    const auto per_row = static_cast<long>(std::lround(period / kClockTick));
+    const auto ticks = static_cast<long>(std::lround(script.seconds / kClockTick));
+    const auto delay = static_cast<std::size_t>(std::lround(k.tracker_delay / kClockTick));
     for (long tick = 0; tick <= ticks; ++tick) {
-        const double t = static_cast<double>(tick) * kTick;
+        const double t = static_cast<double>(tick) * kClockTick;
         double mean_left = speed_left, mean_right = speed_right, share = 1.0;  // over this tick
-        for (; next < list.size() && list[next].at < t + kTick - kSameTime; ++next) {
+        for (; next < list.size() && list[next].at < t + kClockTick - kSameTime; ++next) {
             const Arrival& command = list[next];
             const double left_now = agenda_speed(command.left), right_now = agenda_speed(command.right);
             if (left_now == speed_left && right_now == speed_right) continue;
-            share = command.at < t + kSameTime ? 1.0 : 1.0 - (command.at - t) / kTick;
+            share = command.at < t + kSameTime ? 1.0 : 1.0 - (command.at - t) / kClockTick;
             mean_left += share * (left_now - speed_left);
             mean_right += share * (right_now - speed_right);
             speed_left = left_now;
@@ -141,12 +141,12 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
             const double w = std::abs(difference) / axle;
             base *= 1.0 + k.scrub * w / (std::abs(v) + w * axle / 2) * (axle / 2);
         }
-        const double turn = difference / base * kTick;
+        const double turn = difference / base * kClockTick;
         const bool moving = vl != 0.0 || vr != 0.0;
-        x += v * kTick * std::cos(heading + kick + turn / 2) + (moving ? k.pull_x * kTick : 0.0);
-        y += v * kTick * std::sin(heading + kick + turn / 2) + (moving ? k.pull_y * kTick : 0.0);
+        x += v * kClockTick * std::cos(heading + kick + turn / 2) + (moving ? k.pull_x * kClockTick : 0.0);
+        y += v * kClockTick * std::sin(heading + kick + turn / 2) + (moving ? k.pull_y * kClockTick : 0.0);
         heading += turn;
-        if (k.push_rate > 0.0 && chance.uniform() < k.push_rate * kTick) {
+        if (k.push_rate > 0.0 && chance.uniform() < k.push_rate * kClockTick) {
             const double way = 2 * std::numbers::pi * chance.uniform();
             x += k.push_size * std::cos(way);
             y += k.push_size * std::sin(way);

@@ -10,7 +10,7 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kFullScale = 4095;
+constexpr double kPlainProximityFullScale = 4095;
 constexpr double kReach = 0.12;  // m
 constexpr int kRays = 5;
 constexpr double kAperture = 0.1;                              // rad, full
@@ -108,7 +108,7 @@ RingReading see(const ProximityKnobs& k, const Scene& s, bool law, RandomStream&
     const double lit = kRoom * s.ambient;
     const double warm = (1.0 + k.warm_gain * (1.0 - std::exp(-s.t / k.warm_time))) *
                         (1.0 + k.per_volt * s.volts) * (1.0 + k.per_run * s.order);
-    const double bright = 1.0 - k.light_gain * lit / kFullScale;
+    const double bright = 1.0 - k.light_gain * lit / kPlainProximityFullScale;
     // Nothing head-on, where a sensor's swing would be no other than its gain.
     const double swing = 1.0 - k.swing * std::pow(std::sin(3 * s.incidence), 2);
     const double sampled = std::floor(s.t / kSensorPeriod) * kSensorPeriod;
@@ -126,8 +126,8 @@ RingReading see(const ProximityKnobs& k, const Scene& s, bool law, RandomStream&
         const double hit = chance.uniform();
         if (exposed && hit < k.hits) counts += hit < k.hits / 2 ? k.hit_counts : -k.hit_counts;
         if (k.dead_zone > 0.0 && counts < k.dead_zone) counts = 0.0;
-        reading.proximity[i] = std::clamp(counts * sag, 0.0, kFullScale);
-        reading.ambient[i] = std::clamp((kDark - lit) * sag, 0.0, kFullScale);
+        reading.proximity[i] = std::clamp(counts * sag, 0.0, kPlainProximityFullScale);
+        reading.ambient[i] = std::clamp((kDark - lit) * sag, 0.0, kPlainProximityFullScale);
     }
     return reading;
 }

@@ -8,7 +8,7 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kBearingDegree = std::numbers::pi / 180;
 constexpr std::array<double, kReceivers> kDirections{15,   50,   75,   105, 133, 159,
                                                      -165, -135, -105, -77, -50, -15};
 constexpr std::array<double, 9> kLogMedian{7.64689, 7.59652, 7.24955, 7.08464, 6.9845,
@@ -31,7 +31,7 @@ double between(const std::array<double, 9>& values, double distance) {
 double vector_bearing(const std::array<double, kReceivers>& gain, double bearing) {
     double x = 0.0, y = 0.0;
     for (std::size_t i = 0; i < kReceivers; ++i) {
-        const double way = kDirections[i] * kDegree;
+        const double way = kDirections[i] * kBearingDegree;
         const double facing = std::cos(bearing - way);
         if (facing <= 0.0) continue;
         x += gain[i] * std::sqrt(facing) * std::cos(way);
@@ -43,7 +43,7 @@ double vector_bearing(const std::array<double, kReceivers>& gain, double bearing
 }  // namespace
 
 double receiver_direction(std::size_t receiver) {
-    return kDirections[receiver] * kDegree;
+    return kDirections[receiver] * kBearingDegree;
 }
 
 double strength_spread(double distance) {

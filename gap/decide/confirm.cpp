@@ -10,7 +10,7 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr Effort kEffort{.iterations = 12};
+constexpr Effort kConfirmingEffort{.iterations = 12};
 constexpr double kSamePrediction = 1e-6;  // of an observable's noise
 
 /// Runs of the second half: every other fold, so that repeats of one condition stand in both. The two runs in
@@ -99,8 +99,8 @@ std::string not_confirmed(const Study& study, const Selection& selection, double
             first.back().push_back(second[run] != 0 ? 0.0 : 1.0);
     }
     Fit half_fit = selection.chosen;
-    half_fit.fitted = fit(study.model(), half_fit.freed, half_fit.fitted.state, first, kEffort);
-    const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kEffort);
+    half_fit.fitted = fit(study.model(), half_fit.freed, half_fit.fitted.state, first, kConfirmingEffort);
+    const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kConfirmingEffort);
     const double won = cost_in(study, none.state, second) - cost_in(study, half_fit.fitted.state, second);
     if (!(won > 0)) return "does not gain on the half of the runs that was not fitted";
     Experiment half = half_of(whole, second);

@@ -30,7 +30,7 @@ struct Law {
     }
 };
 
-struct Row {
+struct ExplainedRow {
     double z;               ///< standardised innovation
     double lapse, outside;  ///< chance that the fit's causes make it an error of theirs, and its density then
     double log_before;      ///< log density of both together, errors by Student's t
@@ -39,11 +39,11 @@ struct Row {
     double density(double inside) const { return (1 - lapse) * inside + lapse * outside; }
 };
 
-Law fitted_without(const std::vector<Row>& rows, std::uint32_t block) {
+Law fitted_without(const std::vector<ExplainedRow>& rows, std::uint32_t block) {
     Law law;
     for (int step = 0; step < kSteps; ++step) {
         double large = 0.0, large_squares = 0.0, squares = 0.0, usual = 0.0;
-        for (const Row& row : rows) {
+        for (const ExplainedRow& row : rows) {
             if (row.block == block) continue;
             const double inside = law.density(row.z), all = row.density(inside);
             const double mine = all > 0 ? (1 - row.lapse) * inside / all : 1.0;
@@ -63,15 +63,15 @@ Law fitted_without(const std::vector<Row>& rows, std::uint32_t block) {
 }
 
 /// Rows of errors that may follow the law; none where what a cause does is carried on from row to row.
-std::vector<Row> rows_of(const Predicted& predicted, const NoiseParameters& noise,
-                         const Innovations& innovations, const std::vector<std::uint32_t>& blocks) {
-    std::vector<Row> rows;
+std::vector<ExplainedRow> rows_of(const Predicted& predicted, const NoiseParameters& noise,
+                                  const Innovations& innovations, const std::vector<std::uint32_t>& blocks) {
+    std::vector<ExplainedRow> rows;
     if (!innovations.mixed.empty()) return rows;
     const stats::StudentLaw usual(std::exp(noise.log_tail));
     for (std::size_t i = 0; i < innovations.z.size(); ++i) {
         if (innovations.role[i] != RowRole::Plain) continue;
         const double z = innovations.z[i];
-        Row row{z, 0.0, 0.0, 0.0, blocks[i]};
+        ExplainedRow row{z, 0.0, 0.0, 0.0, blocks[i]};
         if (!predicted.lapse.empty() && predicted.lapse[i] > 0.0) {
             const double scale = std::sqrt(innovations.variance[i]),
                          shift = of_row(predicted.lapse_shift, i) / scale,
@@ -114,7 +114,7 @@ std::vector<double> scores_with_large_errors(const Study& study, const Fit& fit,
         std::vector<double> won(scores.size(), 0.0);
         for (std::uint32_t block = 0; block < won.size(); ++block) {
             const Law law = fitted_without(rows, block);
-            for (const Row& row : rows)
+            for (const ExplainedRow& row : rows)
                 if (row.block == block)
                     won[block] += std::log(row.density(law.density(row.z))) - row.log_before;
         }

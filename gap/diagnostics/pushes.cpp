@@ -23,7 +23,7 @@ namespace {
 constexpr double kLeastPushes = 3.0;
 constexpr double kIsPush = 0.5;
 
-double sum_of(const std::vector<double>& all) {
+double sum_of_pushes(const std::vector<double>& all) {
     return std::accumulate(all.begin(), all.end(), 0.0);
 }
 
@@ -81,7 +81,7 @@ std::vector<Push> pushes_of(const Experiment& experiment, const Pushed& rows) {
 }
 
 /// The most unlikely of several questions, its chance corrected for how many they are (Bonferroni).
-class Look {
+class PushLook {
   public:
     void at(PushPattern one) {
         asked_ += 1;
@@ -103,8 +103,8 @@ PushPattern by_place(const Experiment& experiment, const Pushed& rows, double ho
     Series places;
     places.run = rows.base->run;
     places.row = rows.base->row;
-    const double all = sum_of(rows.pushed);
-    Look look;
+    const double all = sum_of_pushes(rows.pushed);
+    PushLook look;
     for (const stats::Component& component : free_form_cells(experiment, places, rows.base->starts)) {
         const auto there = stats::sums_of_cells(component, [&](std::size_t i) { return rows.pushed[i]; }),
                    share =
@@ -156,17 +156,17 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
                                         const State& state) {
     const Pushed rows = pushed_rows(model, state);
     if (rows.base == nullptr) return std::nullopt;
-    const double hoped = sum_of(rows.chance);
+    const double hoped = sum_of_pushes(rows.chance);
     if (!(hoped > 0)) return std::nullopt;
     double seen = 0.0;
     for (const std::size_t i : rows.likely)
         seen += rows.pushed[i];
     if (seen < thresholds::kPushesShown * hoped)
         return PushPattern{"rows that were as likely not pushed", hoped - seen, hoped, hoped - seen, 1.0};
-    if (sum_of(rows.pushed) < kLeastPushes) return std::nullopt;
-    Look look;
+    if (sum_of_pushes(rows.pushed) < kLeastPushes) return std::nullopt;
+    PushLook look;
     look.at(by_place(experiment, rows, hoped));
-    Look ways;
+    PushLook ways;
     for (PushPattern& one : push_directions(pushes_of(experiment, rows), seen))
         ways.at(std::move(one));
     look.at(ways.least());

@@ -19,9 +19,9 @@ double log_normal(double squared, double variance, double dimensions) {
 }
 
 /// A drive's pose as its tracker has it and as the wheels do: sums of two places and a heading, a row each.
-class Drive {
+class TakenDrive {
   public:
-    Drive(const Experiment& experiment, const Model& model, const State& state)
+    TakenDrive(const Experiment& experiment, const Model& model, const State& state)
         : experiment_(experiment),
           sums_(model.observables()),
           predicted_(model.predicted(state.values)),
@@ -108,7 +108,7 @@ class Drive {
 
 double taken_back(const Experiment& experiment, const Model& model, const State& state,
                   const std::vector<std::size_t>& pushed) {
-    const Drive drive(experiment, model, state);
+    const TakenDrive drive(experiment, model, state);
     // ln of the weight of all ways to take pushes up to one: by itself, or taking back any before it in its
     // run, at even odds.
     std::vector<double> weight(1, 0.0);

@@ -14,7 +14,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLeastTail = 1e-15;
+constexpr double kLeastTailDensity = 1e-15;
 constexpr double kSmall = 1e-4;  // below, the series of ln(1 + q) is exact to rounding
 
 double square(double value) {
@@ -61,7 +61,7 @@ double quantile_residual(const Predicted& p, std::size_t i, double z, double sd,
     const double here = stats::normal_tail((side * z - side * shift) / spread),
                  other = p.lapse_both ? stats::normal_tail((side * z + side * shift) / spread) : here;
     const double beyond = (1 - lapse) * law.tail(side * z) + lapse * (here + other) / 2;
-    return side * law.beyond(std::clamp(beyond, kLeastTail, 1 - kLeastTail));
+    return side * law.beyond(std::clamp(beyond, kLeastTailDensity, 1 - kLeastTailDensity));
 }
 
 /// Readings inside a dead zone should not be there.

@@ -22,8 +22,8 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kTrace = 30;    // rows after which a filter has settled
-constexpr std::size_t kSettled = 10;  // the last of them
+constexpr std::size_t kTrace = 30;          // rows after which a filter has settled
+constexpr std::size_t kSettledRounds = 10;  // the last of them
 
 /// Rows of a run that follow each other.
 using Chain = stats::Stretch;
@@ -92,7 +92,7 @@ double tail_of_highest(double most, std::vector<double> highest) {
 }
 
 /// Of a jump at `at`: its score and information beyond those of a number for the whole chain.
-struct Look {
+struct WindowLook {
     double g, h;
 };
 
@@ -100,7 +100,7 @@ class Scan {
   public:
     Scan(std::span<const double> pull, double curvature, const std::vector<double>& trace)
         : pull_(pull), curvature_(curvature), trace_(trace) {
-        const std::size_t n = trace.size(), from = n - std::min(kSettled, n);
+        const std::size_t n = trace.size(), from = n - std::min(kSettledRounds, n);
         for (std::size_t j = from; j < n; ++j)
             settled_ += trace[j] / static_cast<double>(n - from);
         after_.assign(pull.size() + 1, 0.0);
@@ -108,8 +108,8 @@ class Scan {
             after_[i] = after_[i + 1] + pull[i];
     }
 
-    Look at(const Chain& chain, std::size_t row) const {
-        const Look jump = from(chain, row), whole = from(chain, chain.first);
+    WindowLook at(const Chain& chain, std::size_t row) const {
+        const WindowLook jump = from(chain, row), whole = from(chain, chain.first);
         const std::size_t rows = chain.last - row;
         // What is common to the whole chain is no jump: projected out, as far as it lasts.
         double both = settled_ * settled_ * static_cast<double>(rows);
@@ -121,7 +121,7 @@ class Scan {
     }
 
   private:
-    Look from(const Chain& chain, std::size_t row) const {
+    WindowLook from(const Chain& chain, std::size_t row) const {
         const std::size_t rows = chain.last - row;
         double g = settled_ * (after_[row] - after_[chain.last]),
                h = settled_ * settled_ * static_cast<double>(rows);
@@ -171,7 +171,7 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
             // How far errors scatter is known of batches: of a shorter side nothing can be said.
             const std::size_t side = std::max(thresholds::kJumpSide, chain.size() / thresholds::kJumpBatches);
             for (std::size_t i = chain.first + side; i + side <= chain.last; ++i) {
-                const Look look = scan.at(chain, i);
+                const WindowLook look = scan.at(chain, i);
                 const double square = look.h > 0 ? look.g * look.g / (spread * look.h) : 0.0;
                 highest.back() = std::max(highest.back(), square - usual);
                 if (best.shape.empty() || square - usual > most) {

@@ -17,7 +17,7 @@ constexpr double kSameForm = 0.995;  // correlation of what two forms do to the 
 constexpr int kRounds = 8;           // of weighted least squares
 
 /// What an effect does in a row, and where in its run the row lies.
-struct Row {
+struct RivalRow {
     double effect, before;  ///< in units of its root mean square; `before`: of the row before
     double place;           ///< 0..1
     double middle;          ///< median of its size
@@ -25,27 +25,27 @@ struct Row {
 
 struct Form {
     const char* words;
-    double (*bend)(const Row&);
+    double (*bend)(const RivalRow&);
 };
 
 /// The effect's own first.
 const Form kForms[] = {
-    {"its own", [](const Row& r) { return r.effect; }},
-    {"its root", [](const Row& r) { return std::copysign(std::sqrt(std::abs(r.effect)), r.effect); }},
-    {"its square", [](const Row& r) { return r.effect * std::abs(r.effect); }},
-    {"with a soft end", [](const Row& r) { return std::tanh(r.effect); }},
+    {"its own", [](const RivalRow& r) { return r.effect; }},
+    {"its root", [](const RivalRow& r) { return std::copysign(std::sqrt(std::abs(r.effect)), r.effect); }},
+    {"its square", [](const RivalRow& r) { return r.effect * std::abs(r.effect); }},
+    {"with a soft end", [](const RivalRow& r) { return std::tanh(r.effect); }},
     {"beyond a threshold only",
-     [](const Row& r) { return std::copysign(std::max(std::abs(r.effect) - r.middle, 0.0), r.effect); }},
-    {"a row later", [](const Row& r) { return r.before; }},
-    {"growing through the run", [](const Row& r) { return r.effect * r.place; }},
-    {"dying away through the run", [](const Row& r) { return r.effect * std::exp(-3 * r.place); }},
+     [](const RivalRow& r) { return std::copysign(std::max(std::abs(r.effect) - r.middle, 0.0), r.effect); }},
+    {"a row later", [](const RivalRow& r) { return r.before; }},
+    {"growing through the run", [](const RivalRow& r) { return r.effect * r.place; }},
+    {"dying away through the run", [](const RivalRow& r) { return r.effect * std::exp(-3 * r.place); }},
 };
 
 /// Rows of an observable as an effect moves them; of a sum what each row adds.
-std::vector<Row> rows_of(const Observable& o, const std::vector<double>& with,
-                         const std::vector<double>& without, double& rms) {
+std::vector<RivalRow> rows_of(const Observable& o, const std::vector<double>& with,
+                              const std::vector<double>& without, double& rms) {
     const std::size_t n = o.y.size();
-    std::vector<Row> rows(n);
+    std::vector<RivalRow> rows(n);
     std::vector<double> sizes;
     double squares = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -73,7 +73,7 @@ std::vector<Row> rows_of(const Observable& o, const std::vector<double>& with,
 }
 
 /// What a form adds to each row's mean.
-std::vector<double> shift_of(const Observable& o, const std::vector<Row>& rows, const Form& form,
+std::vector<double> shift_of(const Observable& o, const std::vector<RivalRow>& rows, const Form& form,
                              double rms) {
     std::vector<double> shift;
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -10,10 +10,10 @@ namespace puckloop::gap::importers {
 
 namespace {
 
-constexpr const char* kFile = "rab_lognormal_iridia.csv";
+constexpr const char* kRabFile = "rab_lognormal_iridia.csv";
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
-    const auto table = read_numbers(folder / kFile, ',', 3, 1);
+std::vector<WrittenExperiment> read_argos_epuck_rab(const std::filesystem::path& folder) {
+    const auto table = read_numbers(folder / kRabFile, ',', 3, 1);
     WrittenExperiment e;
     e.folder = "argos3_epuck_rab";
     e.kind = "rab";
@@ -37,7 +37,8 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 }  // namespace
 
-const Importer kArgosEpuckRab{
-    "argos3_epuck_rab", "received strength of range-and-bearing boards at 9 distances", kFile, kFile, read};
+const Importer kArgosEpuckRab{"argos3_epuck_rab",
+                              "received strength of range-and-bearing boards at 9 distances", kRabFile,
+                              kRabFile, read_argos_epuck_rab};
 
 }  // namespace puckloop::gap::importers

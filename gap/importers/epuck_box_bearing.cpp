@@ -20,10 +20,10 @@ namespace puckloop::gap::importers {
 
 namespace {
 
-constexpr const char* kFile = "proximity_by_turn.csv";
+constexpr const char* kBearingFile = "proximity_by_turn.csv";
 constexpr double kReach = 0.12;   // m, the simulator's reach of a proximity sensor
 constexpr double kNothing = 1.0;  // m, written where a sensor sees nothing
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kBoxDegree = std::numbers::pi / 180;
 constexpr int kSensors = 8;
 
 /// Distance along a sensor's axis to the face, and the angle of incidence (signed).
@@ -38,8 +38,8 @@ std::pair<double, double> seen(const physics::Parameters& p, std::size_t sensor,
     return {distance, incidence};
 }
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
-    const auto table = read_numbers(folder / kFile, ',', kSensors + 1, 1);
+std::vector<WrittenExperiment> read_epuck_box_bearing(const std::filesystem::path& folder) {
+    const auto table = read_numbers(folder / kBearingFile, ',', kSensors + 1, 1);
     const physics::Parameters simulator;
     WrittenExperiment e;
     e.folder = "epuck1_box_bearing";
@@ -58,7 +58,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         run.name = fmt::format("ps{}", s);
         run.constants["sensor"] = static_cast<double>(s);
         for (std::size_t i = 0; i < table[0].size(); ++i) {
-            const auto [distance, angle] = seen(simulator, s, std::numbers::pi + table[0][i] * kDegree);
+            const auto [distance, angle] = seen(simulator, s, std::numbers::pi + table[0][i] * kBoxDegree);
             run.row({{"order", static_cast<double>(i)},
                      {"distance_m", distance},
                      {"angle_rad", angle},
@@ -72,6 +72,6 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 }  // namespace
 
 const Importer kEpuckBoxBearing{"epuck1_box_bearing", "e-puck 1 proximity sensors beside a box, by turn",
-                                kFile, kFile, read};
+                                kBearingFile, kBearingFile, read_epuck_box_bearing};
 
 }  // namespace puckloop::gap::importers

@@ -55,7 +55,7 @@ std::vector<double> summed(std::vector<double> counts) {
     return counts;
 }
 
-WrittenRun read_run(const std::filesystem::path& file, const std::string& session) {
+WrittenRun read_optiodom_run(const std::filesystem::path& file, const std::string& session) {
     auto table = read_numbers(file, ',', 6);
     WrittenRun run;
     run.name = file.stem().string();
@@ -97,12 +97,12 @@ WrittenExperiment read_part(const std::filesystem::path& folder, const char* par
             throw InputError(metadata.front().string(), "", "tells another robot than the sessions before",
                              "one nominal geometry");
         for (const auto& file : paths_like(session, "*_run-*.csv"))
-            e.runs.push_back(read_run(file, session.filename().string()));
+            e.runs.push_back(read_optiodom_run(file, session.filename().string()));
     }
     return e;
 }
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read_optiodom(const std::filesystem::path& folder) {
     std::vector<WrittenExperiment> all{
         read_part(folder, "circular", "circles in both senses under motion capture"),
         read_part(folder, "free", "free drives under motion capture")};
@@ -114,8 +114,8 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 }  // namespace
 
-const Importer kOptiodom{"optiodom_diffdrive",
-                         "wheel counts and motion capture of a differential-drive robot",
-                         "circular/ or free/ with *_metadata.csv", "@(circular|free)/*/*_metadata.csv", read};
+const Importer kOptiodom{
+    "optiodom_diffdrive", "wheel counts and motion capture of a differential-drive robot",
+    "circular/ or free/ with *_metadata.csv", "@(circular|free)/*/*_metadata.csv", read_optiodom};
 
 }  // namespace puckloop::gap::importers

@@ -23,7 +23,7 @@ constexpr double kHeading = std::numbers::pi / 2;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kQuantum = 0.1 * kDegree;
 
-WrittenRun read_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
+WrittenRun read_roh_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
     double x = 0, y = 0;
     if (std::sscanf(file.filename().c_str(), "(X%lf,Y%lf).csv", &x, &y) != 2)
         throw InputError(file.string(), "", "does not tell the position in its name", "(X1.5,Y3.0).csv");
@@ -44,7 +44,7 @@ WrittenRun read_run(const std::filesystem::path& file, const std::vector<std::ve
     return run;
 }
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read_roh_bearing(const std::filesystem::path& folder) {
     const auto beacons = read_numbers(folder / "landmark.csv", ',', 2);
     WrittenExperiment e;
     e.folder = "roh_ir_bearing";
@@ -58,13 +58,13 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.licence = "BSD-2";
     e.instruments.push_back({"bearing_rad", NAN, NAN, kQuantum});
     for (const auto& file : paths_like(folder, kPositions))
-        e.runs.push_back(read_run(file, beacons));
+        e.runs.push_back(read_roh_run(file, beacons));
     return {e};
 }
 
 }  // namespace
 
 const Importer kRohBearing{"roh_ir_bearing", "bearings to infra-red beacons",
-                           "landmark.csv and (X..,Y..).csv", kPositions, read};
+                           "landmark.csv and (X..,Y..).csv", kPositions, read_roh_bearing};
 
 }  // namespace puckloop::gap::importers

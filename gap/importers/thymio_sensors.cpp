@@ -132,7 +132,7 @@ WrittenRun accelerometer_run(const std::filesystem::path& file) {
     return run;
 }
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read_thymio_sensors(const std::filesystem::path& folder) {
     std::vector<WrittenExperiment> all;
     WrittenExperiment proximity = described(
         "thymio_proximity", "proximity", "Thymio II proximity sensors in light and darkness",
@@ -170,6 +170,6 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 const Importer kThymioSensors{"thymio_sensors_resilient-swarms",
                               "Thymio II proximity, ground and acceleration",
                               "proximity_sensor*.csv or ground_sensor_readings*.csv",
-                              "@(proximity_sensor|ground_sensor_readings)*.csv", read};
+                              "@(proximity_sensor|ground_sensor_readings)*.csv", read_thymio_sensors};
 
 }  // namespace puckloop::gap::importers

@@ -35,7 +35,7 @@ wheel_counts(const std::vector<double>& x, const std::vector<double>& y, const s
     return {left, right};
 }
 
-WrittenRun read_run(const std::filesystem::path& folder) {
+WrittenRun read_vicon_run(const std::filesystem::path& folder) {
     const auto truth = read_numbers(folder / "gt.txt", ' ', 3);
     const auto pose = read_numbers(folder / "odom_pose.txt", ' ', 2);
     const auto turn = read_numbers(folder / "odom_quaternion.txt", ' ', 2);
@@ -57,7 +57,7 @@ WrittenRun read_run(const std::filesystem::path& folder) {
     return run;
 }
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read_thymio_vicon(const std::filesystem::path& folder) {
     WrittenExperiment e;
     e.folder = "thymio_vicon_motion";
     e.kind = "motion";
@@ -78,7 +78,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     for (const auto& turns : paths_like(folder, kRuns)) {
         const auto run = turns.parent_path();
         if (std::filesystem::exists(run / "gt.txt") && std::filesystem::exists(run / "odom_pose.txt"))
-            e.runs.push_back(read_run(run));
+            e.runs.push_back(read_vicon_run(run));
     }
     return {e};
 }
@@ -86,6 +86,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 }  // namespace
 
 const Importer kThymioVicon{"thymio_ground_vicon_epfl", "Thymio II odometry under motion capture",
-                            "folders with gt.txt, odom_pose.txt, odom_quaternion.txt", kRuns, read};
+                            "folders with gt.txt, odom_pose.txt, odom_quaternion.txt", kRuns,
+                            read_thymio_vicon};
 
 }  // namespace puckloop::gap::importers

@@ -60,7 +60,7 @@ double usual_loop(std::vector<double> loops) {
     return std::accumulate(loops.begin(), loops.begin() + kept, 0.0) / static_cast<double>(kept);
 }
 
-WrittenRun read_run(const std::filesystem::path& file) {
+WrittenRun read_unifr_run(const std::filesystem::path& file) {
     const std::vector<double> loops = loops_of(file);
     WrittenRun run;
     run.name = file.stem().string().substr(std::string("results_go_on_").size());
@@ -71,7 +71,7 @@ WrittenRun read_run(const std::filesystem::path& file) {
     return run;
 }
 
-std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read_unifr_timing(const std::filesystem::path& folder) {
     std::vector<WrittenExperiment> all;
     for (const auto& [part, title] : {std::pair{"pipuck", "host loop of an e-puck2 on a Pi-puck"},
                                       std::pair{"wifi", "host loop of an e-puck2 over WiFi"}}) {
@@ -87,7 +87,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         e.licence = "GPL-3";
         for (const auto& file :
              paths_like(folder, fmt::format("1_go_on_benchmark/data/results_go_on_{}*.json", part)))
-            e.runs.push_back(read_run(file));
+            e.runs.push_back(read_unifr_run(file));
         if (!e.runs.empty()) all.push_back(e);
     }
     return all;
@@ -95,6 +95,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
 
 }  // namespace
 
-const Importer kUnifrTiming{"unifr_epuck2_timing", "durations of an e-puck2 host loop", kFiles, kFiles, read};
+const Importer kUnifrTiming{"unifr_epuck2_timing", "durations of an e-puck2 host loop", kFiles, kFiles,
+                            read_unifr_timing};
 
 }  // namespace puckloop::gap::importers

@@ -18,7 +18,7 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kStandardGravity = 9.81;
 constexpr const char* kAxes[] = {"ax", "ay", "az"};
 
 class AccelerometerModel final : public ModelOf<physics::Parameters> {
@@ -39,8 +39,9 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
             for (std::size_t i = 0; i < pitch.size(); ++i) {
                 const double sp = std::sin(pitch[i]), cp = std::cos(pitch[i]), sr = std::sin(roll[i]),
                              cr = std::cos(roll[i]);
-                one.felt.push_back({-left[i] * cr / kGravity - cp * sr, -forward[i] * cp / kGravity - sp,
-                                    cp * cr - forward[i] * sp / kGravity - left[i] * sr / kGravity});
+                one.felt.push_back(
+                    {-left[i] * cr / kStandardGravity - cp * sr, -forward[i] * cp / kStandardGravity - sp,
+                     cp * cr - forward[i] * sp / kStandardGravity - left[i] * sr / kStandardGravity});
             }
             for (double& speed : one.motor)
                 speed = std::abs(speed) / physics::kSpeedUnit;

@@ -13,14 +13,14 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kEdge = 0.02;           // of a batch: rounding of clocks
+constexpr double kFullTurn = 2 * std::numbers::pi;
+constexpr double kBatchEdge = 0.02;      // of a batch: rounding of clocks
 constexpr double kClockDoubt = 3e-4;     // s: when in its loop the robot reads its clock
 constexpr std::size_t kShareEarly = 30;  // one frame in so many is taken to have waited least
 constexpr double kClockSd = 1e-4;        // s: of that doubt
 constexpr double kMostLater = 8.0;       // batches: what comes later still is late by itself
 constexpr std::size_t kParts = 8;        // of a batch: where frames that wait before it miss it alike
-constexpr double kRoundings = 2.0;       // of the robot's clock: how much less even frames may look
+constexpr double kFrameRoundings = 2.0;  // of the robot's clock: how much less even frames may look
 constexpr double kFineBatch = 10.0;      // clock doubts: in a shorter batch the arrival has no say
 constexpr double kLongestFine = 0.02;    // s: longer ones show in the arrivals themselves
 constexpr std::size_t kStretch = 20;     // rows
@@ -31,7 +31,7 @@ constexpr std::size_t kBandsTried = 24;
 constexpr double kHalfMet = 2 / std::numbers::pi;  // length of the mean of phases spread over half a turn
 constexpr double kSurelyMet = 9.2;  // of phases: as far from even ones as by chance once in 10 000 (Rayleigh)
 constexpr double kClearBeat = 6.0;  // deviations: the best of some thousand frequencies is some 4
-constexpr std::size_t kTried = 6;   // of the bands' batches, by what they leave
+constexpr std::size_t kBatchesTried = 6;  // of the bands' batches, by what they leave
 
 /// A phase that goes on by even steps.
 struct Turning {
@@ -56,7 +56,7 @@ double in_batches(const BatchGrid& grid, double ready) {
 /// that the time it was ready at allows.
 double deliver(const Observable& o, std::size_t from, std::size_t to, const BatchGrid& grid,
                const std::vector<double>& ready, Placed& placed) {
-    const double doubt = std::max(kEdge, kClockDoubt / grid.batch);
+    const double doubt = std::max(kBatchEdge, kClockDoubt / grid.batch);
     double off = 0.0;
     for (std::size_t k = from; k < to; ++k) {
         const double now = in_batches(grid, ready[k]), next = std::ceil(now),
@@ -97,9 +97,9 @@ double place_by_waits(const Observable& o, std::size_t from, std::size_t to, dou
             usual += (o.y[k] - arrival[k]) / static_cast<double>(last - first);
         std::complex<double> saw;
         for (std::size_t k = first; k < last; ++k)
-            saw += (o.y[k] - arrival[k] - usual) * std::polar(1.0, kTurn * arrival[k] / batch);
+            saw += (o.y[k] - arrival[k] - usual) * std::polar(1.0, kFullTurn * arrival[k] / batch);
         // Waits fall by one for each one later that a frame is ready, and jump where a batch leaves.
-        return (std::arg(saw) - std::numbers::pi / 2) / kTurn * batch;
+        return (std::arg(saw) - std::numbers::pi / 2) / kFullTurn * batch;
     };
     const double early_jump = jump_in(half, to), late_jump = jump_in(from, half);
     std::vector<double> rest;
@@ -127,7 +127,7 @@ double best_near(const Observable& o, std::size_t rows, const std::vector<double
         for (const auto& [from, to] : stretches) {
             std::complex<double> sum;
             for (std::size_t i = from; i < to; ++i)
-                sum += waited[i] * std::polar(1.0, kTurn * ready[i] / (batch * (1 + off)));
+                sum += waited[i] * std::polar(1.0, kFullTurn * ready[i] / (batch * (1 + off)));
             power += std::norm(sum);
         }
         if (power <= most) continue;
@@ -172,8 +172,8 @@ BatchGrid grid_of(const Observable& o, std::size_t from, std::size_t to, double 
                   const std::vector<double>& ready) {
     std::complex<double> beat;
     for (std::size_t k = from; k < to; ++k)
-        beat += std::polar(1.0, kTurn * o.y[k] / batch);
-    const double phase = std::arg(beat) / kTurn * batch;
+        beat += std::polar(1.0, kFullTurn * o.y[k] / batch);
+    const double phase = std::arg(beat) / kFullTurn * batch;
     std::vector<double> waits;
     for (std::size_t k = from; k < to; ++k)
         waits.push_back(nearest(o.y[k], batch, phase) - ready[k]);
@@ -198,7 +198,7 @@ void pass_over_locked(std::size_t from, std::size_t to, double batch, const std:
                       const std::vector<double>& ready, Placed& placed) {
     std::complex<double> beat;
     for (std::size_t k = from; k < to; ++k)
-        beat += std::polar(1.0, kTurn * begun[k] / batch);
+        beat += std::polar(1.0, kFullTurn * begun[k] / batch);
     const auto rows = static_cast<double>(to - from);
     if (std::abs(beat) < kHalfMet * rows || std::norm(beat) < kSurelyMet * rows) return;
     for (std::size_t k = from; k < to; ++k) {
@@ -212,7 +212,7 @@ void follow_even_frames(std::size_t from, std::size_t to, double batch, double r
     if (is_fine_batch(batch)) return;
     const auto wait = [&](std::size_t k) { return placed.mean[k] - batch * placed.later[k] - ready[k]; };
     for (std::size_t k = from + 1; k < to; ++k)
-        if (std::abs(wait(k) - wait(k - 1)) > kClockDoubt + kRoundings * rounding) return;
+        if (std::abs(wait(k) - wait(k - 1)) > kClockDoubt + kFrameRoundings * rounding) return;
     for (std::size_t k = from; k < to; ++k)
         placed.mean[k] = ready[k] + batch * placed.later[k];
 }
@@ -256,7 +256,7 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     const double step = 1 / (kSteps * kStretch * between);
     std::vector<Turning> turning;
     for (const double at : ready)
-        turning.push_back({std::polar(1.0, kTurn * lowest * at), std::polar(1.0, kTurn * step * at)});
+        turning.push_back({std::polar(1.0, kFullTurn * lowest * at), std::polar(1.0, kFullTurn * step * at)});
     // Frames come at nearly even times, which many frequencies beat with alike: the best of each band is
     // looked at as a batch.
     const double clear = usual + kClearBeat * std::sqrt(usual);
@@ -310,7 +310,7 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     }
     std::sort(tried.begin(), tried.end());
     std::vector<double> found;
-    for (std::size_t k = 0; k < std::min(kTried, tried.size()); ++k)
+    for (std::size_t k = 0; k < std::min(kBatchesTried, tried.size()); ++k)
         found.push_back(tried[k].second);
     return found;
 }

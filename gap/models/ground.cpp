@@ -17,14 +17,14 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kStill = 1e-6;     // m: less is no way
+constexpr double kNoWay = 1e-6;     // m: less is no way
 constexpr double kSameGrey = 0.01;  // beyond the scatter of a standing robot's truth
 
-struct Numbers : physics::Parameters {
+struct GroundNumbers : physics::Parameters {
     double raised = 0.0, forward_error = 0.0, left_error = 0.0, ambient_offset = 0.0;
 };
 
-class GroundModel final : public ModelOf<Numbers> {
+class GroundModel final : public ModelOf<GroundNumbers> {
   public:
     explicit GroundModel(const Experiment& experiment) {
         const Rows rows(experiment, "sensor", {"grey", "reading"});
@@ -42,12 +42,12 @@ class GroundModel final : public ModelOf<Numbers> {
         lay_track();
         sensor_ = whole(sensor);
         simulated("ground.", {"black", "white", "saturation", "height_slope", "x"});
-        declare({{&Numbers::raised, "ground.raised", "m"}});
+        declare({{&GroundNumbers::raised, "ground.raised", "m"}});
         simulated("ground.", {"acceleration_tilt"});
-        declare({{&Numbers::forward_error, "ground.forward_error", "m"},
-                 {&Numbers::left_error, "ground.left_error", "m"}});
+        declare({{&GroundNumbers::forward_error, "ground.forward_error", "m"},
+                 {&GroundNumbers::left_error, "ground.left_error", "m"}});
         simulated("ground.", {"lag"});
-        declare({{&Numbers::ambient_offset, "ground.ambient_offset", "counts"}});
+        declare({{&GroundNumbers::ambient_offset, "ground.ambient_offset", "counts"}});
         simulated("ground.", {"warmup_gain", "warmup_time"});
         for (const int one : in_order_met(sensor_))
             simulated("ground.", {fmt::format("gain{}", one), fmt::format("offset{}", one)});
@@ -61,7 +61,7 @@ class GroundModel final : public ModelOf<Numbers> {
         out.resize(1);
         auto& mean = out[0].mean;
         mean.resize(grey_.size());
-        const Numbers now = numbers(v);
+        const GroundNumbers now = numbers(v);
         const physics::GroundParameters& ground = now.ground;
         for (std::size_t i = 0; i < mean.size(); ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
@@ -105,7 +105,7 @@ class GroundModel final : public ModelOf<Numbers> {
     /// Does row k + 1 see another grey than row k though the wheels made no way between them? Then the robot
     /// was carried, and the track of one says nothing of the other's place.
     bool carried(std::size_t k) const {
-        return std::abs(way_[k + 1] - way_[k]) < kStill && std::abs(grey_[k + 1] - grey_[k]) > kSameGrey;
+        return std::abs(way_[k + 1] - way_[k]) < kNoWay && std::abs(grey_[k + 1] - grey_[k]) > kSameGrey;
     }
 
     /// The grey `ahead` metres farther on (or back) along the track of row i.
@@ -121,7 +121,7 @@ class GroundModel final : public ModelOf<Numbers> {
             ++k;
         const double rest = at - way_[k];
         const double step = goes_on(k + 1) ? way_[k + 1] - way_[k] : 0.0;
-        if (behind(k) || std::abs(step) < kStill || sense * (at - way_[k] - step) > 0)
+        if (behind(k) || std::abs(step) < kNoWay || sense * (at - way_[k] - step) > 0)
             return grey_[k] + rest * along_[k];
         const double u = rest / step, v = 1 - u;  // Hermite's cubic through both greys and slopes
         return (1 + 2 * u) * v * v * grey_[k] + u * v * v * step * along_[k] +

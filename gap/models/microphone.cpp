@@ -46,12 +46,12 @@ double normal_range_sd(double n) {
     return std::numbers::pi / std::numbers::sqrt3 / std::sqrt(2.0 * std::log(n));
 }
 
-struct Numbers : physics::Parameters {
+struct MicrophoneNumbers : physics::Parameters {
     double level = kLevel, gaussian = 0.0;
     std::array<double, 8> gain{1, 1, 1, 1, 1, 1, 1, 1};  // of more than the simulator's robot has
 };
 
-class MicrophoneModel final : public ModelOf<Numbers> {
+class MicrophoneModel final : public ModelOf<MicrophoneNumbers> {
   public:
     explicit MicrophoneModel(const Experiment& experiment) {
         const Rows rows(experiment, "mic", {"distance_m", "level"});
@@ -65,12 +65,13 @@ class MicrophoneModel final : public ModelOf<Numbers> {
                                                 {time_, "t_s"},
                                                 {mic, "mic"}}));
         mic_ = whole(mic);
-        declare({{&Numbers::level, "microphone.level", "counts"}});
+        declare({{&MicrophoneNumbers::level, "microphone.level", "counts"}});
         simulated("microphone.", {"exponent", "directivity", "self_noise", "motor_noise", "window_lost"});
-        declare({{&Numbers::gaussian, "microphone.gaussian", "1"}});
+        declare({{&MicrophoneNumbers::gaussian, "microphone.gaussian", "1"}});
         simulated("microphone.", {"warmup_gain", "warmup_time"});
         for (const int one : in_order_met(mic_))
-            declare_part(&Numbers::gain, static_cast<std::size_t>(one), "microphone.gain", one, "1");
+            declare_part(&MicrophoneNumbers::gain, static_cast<std::size_t>(one), "microphone.gain", one,
+                         "1");
         apply_nominal(experiment);
     }
 
@@ -78,7 +79,7 @@ class MicrophoneModel final : public ModelOf<Numbers> {
         out.resize(1);
         auto& mean = out[0].mean;
         mean.resize(distance_.size());
-        const Numbers now = numbers(v);
+        const MicrophoneNumbers now = numbers(v);
         const physics::MicrophoneParameters& mic = now.microphone;
         const bool gaussian = now.gaussian != 0.0;
         out[0].extra.assign(gaussian ? mean.size() : 0, 0.0);

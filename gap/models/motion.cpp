@@ -48,7 +48,7 @@ constexpr std::pair<const char*, const char*> kWheelColumns[] = {{"steps_left", 
                                                                  {"steps_right", "cmd_right"}};
 
 /// Beside the simulator's: how the robot gets its commands, and what looks at it.
-struct Numbers : physics::Parameters {
+struct MotionNumbers : physics::Parameters {
     double agenda = 1.0;  ///< 0: the project's own firmware; read before the fit, as start_loss
     double start_loss = 0.0, scale = 0.0, mismatch = 0.0, friction = 1 / contact.mu, latency = 0.0,
            drop = 0.0, burst = 0.0, marker_x = 0.0, marker_y = 0.0, marker_angle = 0.0, delay = 0.0,
@@ -61,7 +61,7 @@ struct Numbers : physics::Parameters {
     double metre() const { return 2 * std::numbers::pi * robot.wheel_radius_left / robot.steps_per_turn; }
 };
 
-class MotionModel final : public ModelOf<Numbers> {
+class MotionModel final : public ModelOf<MotionNumbers> {
   public:
     MotionModel(const Experiment& experiment, MotionView view) : view_(view) {
         const Rows rows(experiment, "", {"t_s", "x_m", "y_m", "theta_rad"});
@@ -78,7 +78,7 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
-        const Numbers now = numbers(v);
+        const MotionNumbers now = numbers(v);
         out.resize(observables_.size());
         const std::size_t n = observables_[0].y.size();
         const bool noisy = now.push.rate > 0 || (!counted_ && now.drop > 0);
@@ -106,7 +106,7 @@ class MotionModel final : public ModelOf<Numbers> {
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter != "robot.deadband") return {};
         std::map<double, std::array<double, 2>> moves;  // speed -> metres asked for, metres seen
-        const Numbers values = nominal();
+        const MotionNumbers values = nominal();
         const double metre = values.metre(), arm = values.robot.axle_length / 2;
         std::size_t row = 0;
         for (const Path& path : paths_) {
@@ -237,7 +237,7 @@ class MotionModel final : public ModelOf<Numbers> {
 
     /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
     std::vector<double> turns() const {
-        const Numbers values = nominal();
+        const MotionNumbers values = nominal();
         const double metre = values.metre();
         std::vector<double> turned;
         for (const Path& path : paths_) {
@@ -254,7 +254,7 @@ class MotionModel final : public ModelOf<Numbers> {
 
     /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
     std::vector<double> jolts(std::size_t observable) const {
-        const Numbers values = nominal();
+        const MotionNumbers values = nominal();
         const double metre = values.metre(), lever = observable == 2 ? 1 / values.robot.axle_length : 0.5;
         std::vector<double> variance;
         for (const Path& path : paths_)
@@ -285,27 +285,27 @@ class MotionModel final : public ModelOf<Numbers> {
 
     void declare_all() {
         simulated("robot.", {"wheel_radius_left", "wheel_radius_right", "axle_length", "steps_per_turn"});
-        declare({{&Numbers::agenda, "firmware.agenda", "1"},
-                 {&Numbers::start_loss, "firmware.start_loss", "1"},
-                 {&Numbers::scale, "wheel_scale", "1"},
-                 {&Numbers::mismatch, "wheel_mismatch", "1"}});
+        declare({{&MotionNumbers::agenda, "firmware.agenda", "1"},
+                 {&MotionNumbers::start_loss, "firmware.start_loss", "1"},
+                 {&MotionNumbers::scale, "wheel_scale", "1"},
+                 {&MotionNumbers::mismatch, "wheel_mismatch", "1"}});
         simulated("robot.", {"turn_scrub"});
-        declare({{&Numbers::friction, "inverse_friction", "1"}});
+        declare({{&MotionNumbers::friction, "inverse_friction", "1"}});
         simulated("robot.", {"load_creep", "slope_creep", "step_loss_speed", "step_loss_width", "deadband",
                              "backlash"});
-        declare({{&Numbers::latency, "command.latency", "s"},
-                 {&Numbers::drop, "command.loss", "1"},
-                 {&Numbers::burst, "command.loss_burst", "1"}});
+        declare({{&MotionNumbers::latency, "command.latency", "s"},
+                 {&MotionNumbers::drop, "command.loss", "1"},
+                 {&MotionNumbers::burst, "command.loss_burst", "1"}});
         simulated("robot.", {"drift_x", "drift_y"});
         simulated("push.", {"rate", "size", "turn"});
-        declare({{&Numbers::marker_x, "tracker.marker_x", "m"},
-                 {&Numbers::marker_y, "tracker.marker_y", "m"},
-                 {&Numbers::marker_angle, "tracker.marker_angle", "rad"},
-                 {&Numbers::delay, "tracker.delay", "s"},
-                 {&Numbers::heading_drift, "tracker.heading_drift", "rad/s"},
-                 {&Numbers::heading_span, "tracker.heading_span", "ln s"},
-                 {&Numbers::heading_doubt, "tracker.heading_doubt", "ln rad"},
-                 {&Numbers::late_step, "counter.late_step", "1"}});
+        declare({{&MotionNumbers::marker_x, "tracker.marker_x", "m"},
+                 {&MotionNumbers::marker_y, "tracker.marker_y", "m"},
+                 {&MotionNumbers::marker_angle, "tracker.marker_angle", "rad"},
+                 {&MotionNumbers::delay, "tracker.delay", "s"},
+                 {&MotionNumbers::heading_drift, "tracker.heading_drift", "rad/s"},
+                 {&MotionNumbers::heading_span, "tracker.heading_span", "ln s"},
+                 {&MotionNumbers::heading_doubt, "tracker.heading_doubt", "ln rad"},
+                 {&MotionNumbers::late_step, "counter.late_step", "1"}});
         if (counted_) nuisances_.push_back({*find("counter.late_step"), 0.0, kMostLateStep, kLateStep});
         nuisances_.push_back(
             {*find("tracker.heading_doubt"), std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
@@ -313,7 +313,7 @@ class MotionModel final : public ModelOf<Numbers> {
                               kSpanWidth, true});
     }
 
-    void drive(const Numbers& values, const Path& path, double late, std::size_t first,
+    void drive(const MotionNumbers& values, const Path& path, double late, std::size_t first,
                Prediction& out) const {
         const physics::BodyParameters& robot = values.robot;
         const double turn = 2 * std::numbers::pi / robot.steps_per_turn;
@@ -454,7 +454,7 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     /// What counters would have counted of the commands; where a run has no pose, what they did count.
-    void predict_counters(const Numbers& now, Prediction& out) const {
+    void predict_counters(const MotionNumbers& now, Prediction& out) const {
         for (std::size_t w = 0; w < 2; ++w) {
             const Observable& o = observables_[3 + w];
             Predicted& p = out[3 + w];
@@ -476,7 +476,7 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     /// In the rows [first, end) of a run.
-    static void predict_counter(const Numbers& now, const WheelCurve& commanded, const Observable& o,
+    static void predict_counter(const MotionNumbers& now, const WheelCurve& commanded, const Observable& o,
                                 std::size_t first, std::size_t end, Predicted& p) {
         const double start = CurveReader(commanded).at(o.time[first]);
         CurveReader reader(commanded);

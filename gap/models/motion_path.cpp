@@ -10,10 +10,10 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
-constexpr double kGravity = 9.81;
+constexpr double kDeadBandEdge = 0.004;  // width of the dead band's edge, share of it
+constexpr double kPathGravity = 9.81;
 constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
-constexpr double kSameTime = 1e-6;     // s
+constexpr double kSameRowTime = 1e-6;  // s
 constexpr double kLeastChance = 1e-6;  // of losing a command again and again
 constexpr double kLeastTurn = 1e-9;    // rad: what rounding of numbers makes
 constexpr double kLeastDensity = 1e-300;
@@ -22,7 +22,7 @@ constexpr double kLeastDensity = 1e-300;
 
 bool settled(const Path& path, double before, double span) {
     return std::ranges::all_of(path.wheel, [&](const WheelCurve& wheel) {
-        const auto after = std::ranges::upper_bound(wheel.jumps, before + kSameTime, {}, &SpeedJump::time);
+        const auto after = std::ranges::upper_bound(wheel.jumps, before + kSameRowTime, {}, &SpeedJump::time);
         return after == wheel.jumps.begin() || before - (after - 1)->time > 1.5 * span;
     });
 }
@@ -35,7 +35,7 @@ double let_through(const WheelCurve& asked, CurveReader& pacer, double deadband,
         const double there = pacer.at(end), steps = std::abs(there - at), speed = steps / (end - from);
         if (end > from) {
             all += steps;
-            moved += steps / (1 + std::exp(-(speed - deadband) / (kEdge * deadband)));
+            moved += steps / (1 + std::exp(-(speed - deadband) / (kDeadBandEdge * deadband)));
         }
         at = there;
         from = end;
@@ -49,7 +49,7 @@ double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse
     auto jump = std::ranges::lower_bound(jumps, from - kLongestSlip, {}, &SpeedJump::time);
     for (; jump != jumps.end() && jump->time < to; ++jump) {
         const double speed = std::abs(jump->change) * metre;
-        const double lasts = speed * inverse_mu / kGravity;
+        const double lasts = speed * inverse_mu / kPathGravity;
         const auto done = [&](double t) {
             const double share = std::clamp((t - jump->time) / std::max(lasts, 1e-6), 0.0, 1.0);
             return 1 - (1 - share) * (1 - share);
@@ -57,14 +57,14 @@ double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse
         double way = speed * lasts / 2;
         if (play > 0 && jump->before * (jump->before + jump->change) < 0)
             way -= std::min(play, std::abs(jump->before * (jump->before + jump->change)) * metre * metre *
-                                      inverse_mu / kGravity);
+                                      inverse_mu / kPathGravity);
         sum += std::copysign(way, jump->change) * (done(to) - done(from));
     }
     return sum;
 }
 
 Loss lost(const std::vector<SpeedJump>& jumps, double drop, double again, double from, double to) {
-    const auto after = std::ranges::upper_bound(jumps, from + kSameTime, {}, &SpeedJump::time);
+    const auto after = std::ranges::upper_bound(jumps, from + kSameRowTime, {}, &SpeedJump::time);
     if (after == jumps.begin() || to <= from) return {};
     const SpeedJump& last = *(after - 1);
     const double rows = std::round((from - last.time) / (to - from));

@@ -35,11 +35,11 @@ constexpr int kPhases = 8;                // of the schedule against the log's c
 constexpr double kClearlyStronger = 1.2;  // a line's power, to believe a phase
 
 /// Beside the simulator's: how the laboratory's order acts.
-struct Numbers : physics::Parameters {
+struct ProximityNumbers : physics::Parameters {
     double order_drift = 0.0, order_zero = 0.0;
 };
 
-class ProximityModel final : public ModelOf<Numbers> {
+class ProximityModel final : public ModelOf<ProximityNumbers> {
   public:
     explicit ProximityModel(const Experiment& experiment) {
         const Rows rows(experiment, "sensor", {"distance_m", "reading"});
@@ -96,7 +96,7 @@ class ProximityModel final : public ModelOf<Numbers> {
         Predicted& p = out[0];
         const std::size_t n = distance_.size();
         p.mean.resize(n);
-        const Numbers all = numbers(v);
+        const ProximityNumbers all = numbers(v);
         const physics::ProximityParameters& now = all.proximity;
         // The curve changes with few parameters: the rest reuse it. One sensor's direction moves
         // only that sensor's rows.
@@ -282,8 +282,8 @@ class ProximityModel final : public ModelOf<Numbers> {
         if (!lit(neighbour_)) hide("proximity.neighbour_crosstalk");
         simulated("proximity.", {"warmup_gain", "warmup_time", "motor_sag", "age"});
         simulated("proximity.", {"ambient_offset", "ambient_gain", "ambient_noise", "battery_gain"});
-        declare({{&Numbers::order_drift, "proximity.order_drift", "1"},
-                 {&Numbers::order_zero, "proximity.order_zero", "1"}});
+        declare({{&ProximityNumbers::order_drift, "proximity.order_drift", "1"},
+                 {&ProximityNumbers::order_zero, "proximity.order_zero", "1"}});
         // Inside a run the order goes with what was varied there, mostly the distance: with a zero of its own
         // a drift could take the place of any law.
         if (!(half_order_ > 0)) hide("proximity.order_zero");

@@ -30,7 +30,7 @@ constexpr double kFullScale = 4095;
 constexpr std::size_t kReceivers = 12;
 constexpr double kLeastGain = 0.01;
 constexpr std::size_t kLeastReceivers = 3;           // with a gain: fewer show nothing of a bearing
-constexpr double kTurn = 0.6;                        // rad: what a reflection turns a bearing by
+constexpr double kReflectionTurn = 0.6;              // rad: what a reflection turns a bearing by
 constexpr double kTurned = 0.66, kWholeTurn = 0.76;  // share beyond half a receiver's 30 degrees; its rms
 constexpr std::size_t kLeastPiled = 5;               // equal highest strengths that look like a rail
 
@@ -51,7 +51,7 @@ constexpr std::array<double, kReceivers + 1> all_one() {
     return ones;
 }
 
-struct Numbers {
+struct RabNumbers {
     /// 1: the simulator's boards; read before the fit, as `carrier` (Hz).
     double ring = 0.0, carrier = 0.0;
     /// Of receivers and emitters by their number; 0: not stated, or all.
@@ -62,7 +62,7 @@ struct Numbers {
            beat_burst = 0.5;
 };
 
-class RabModel final : public ModelOf<Numbers> {
+class RabModel final : public ModelOf<RabNumbers> {
   public:
     explicit RabModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {"distance_m"});
@@ -76,7 +76,7 @@ class RabModel final : public ModelOf<Numbers> {
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
-        const Numbers now = numbers(v);
+        const RabNumbers now = numbers(v);
         out.resize(observables_.size());
         if (strength_) predict_strength(now, out[*strength_]);
         if (bearing_) predict_bearing(now, out[*bearing_]);
@@ -195,33 +195,33 @@ class RabModel final : public ModelOf<Numbers> {
     }
 
     void declare_all() {
-        declare({{&Numbers::strength_gain, "rab.strength_gain", "1"}});
+        declare({{&RabNumbers::strength_gain, "rab.strength_gain", "1"}});
         const std::set<int> receivers(receiver_.begin(), receiver_.end()),
             emitters(emitter_.begin(), emitter_.end());
         receivers_ = receivers.size();
         for (const int r : receivers)
-            declare_part(&Numbers::receiver, static_cast<std::size_t>(r), "rab.receiver_gain", r, "1");
+            declare_part(&RabNumbers::receiver, static_cast<std::size_t>(r), "rab.receiver_gain", r, "1");
         for (const int e : emitters)
             if (!ring_ || e > 0)
-                declare_part(&Numbers::emitter, static_cast<std::size_t>(e), "rab.emitter_gain", e, "1");
-        declare({{&Numbers::ring, "rab.ring", "1"}, {&Numbers::carrier, "rab.carrier", "Hz"}});
+                declare_part(&RabNumbers::emitter, static_cast<std::size_t>(e), "rab.emitter_gain", e, "1");
+        declare({{&RabNumbers::ring, "rab.ring", "1"}, {&RabNumbers::carrier, "rab.carrier", "Hz"}});
         if (ring_) {
-            declare({{&Numbers::emitter_lobe, "rab.emitter_lobe", "1"},
-                     {&Numbers::receiver_lobe, "rab.receiver_lobe", "1"}});
+            declare({{&RabNumbers::emitter_lobe, "rab.emitter_lobe", "1"},
+                     {&RabNumbers::receiver_lobe, "rab.receiver_lobe", "1"}});
             parameters_[*find("rab.emitter_lobe")].neutral = ring_->neutral().emitter_lobe;
             parameters_[*find("rab.receiver_lobe")].neutral = ring_->neutral().receiver_lobe;
         }
-        declare({{&Numbers::strength_spread, "rab.strength_spread", "1"},
-                 {&Numbers::far_floor, "rab.far_floor", "counts"},
-                 {&Numbers::saturation, "rab.saturation", "counts"},
-                 {&Numbers::multipath, "rab.multipath", "1"},
-                 {&Numbers::multipath_loss, "rab.multipath_loss", "ln counts"},
-                 {&Numbers::bearing_offset, "rab.bearing_offset", "rad"},
-                 {&Numbers::collisions, "rab.collisions", "1"},
-                 {&Numbers::random_loss, "rab.random_loss", "1"},
-                 {&Numbers::fetch_time, "rab.fetch_time", "s"},
-                 {&Numbers::beat, "rab.beat", "1"},
-                 {&Numbers::beat_burst, "rab.beat_burst", "s"}});
+        declare({{&RabNumbers::strength_spread, "rab.strength_spread", "1"},
+                 {&RabNumbers::far_floor, "rab.far_floor", "counts"},
+                 {&RabNumbers::saturation, "rab.saturation", "counts"},
+                 {&RabNumbers::multipath, "rab.multipath", "1"},
+                 {&RabNumbers::multipath_loss, "rab.multipath_loss", "ln counts"},
+                 {&RabNumbers::bearing_offset, "rab.bearing_offset", "rad"},
+                 {&RabNumbers::collisions, "rab.collisions", "1"},
+                 {&RabNumbers::random_loss, "rab.random_loss", "1"},
+                 {&RabNumbers::fetch_time, "rab.fetch_time", "s"},
+                 {&RabNumbers::beat, "rab.beat", "1"},
+                 {&RabNumbers::beat_burst, "rab.beat_burst", "s"}});
         rail_ = rail_seen();
         if (!(rail_ > 0)) hide("rab.saturation");  // a rail that no strength lies at has no say
     }
@@ -233,7 +233,7 @@ class RabModel final : public ModelOf<Numbers> {
         return gains;
     }
 
-    std::shared_ptr<const std::vector<RabReading>> ring_readings(const Numbers& now) const {
+    std::shared_ptr<const std::vector<RabReading>> ring_readings(const RabNumbers& now) const {
         RabParts parts = ring_->neutral();
         for (std::size_t k = 0; k < kReceivers; ++k) {
             parts.receiver[k] = std::max(now.receiver[k + 1], kLeastGain);
@@ -250,7 +250,7 @@ class RabModel final : public ModelOf<Numbers> {
         return ring_->readings(parts);
     }
 
-    void predict_strength(const Numbers& now, Predicted& p) const {
+    void predict_strength(const RabNumbers& now, Predicted& p) const {
         const std::size_t n = log_median_.size();
         p.mean.resize(n);
         p.factor = spread_;
@@ -281,13 +281,14 @@ class RabModel final : public ModelOf<Numbers> {
                 p.lapse[i] = other * (occluded_[i] > 0 ? 1.0 : 0.05);
     }
 
-    void predict_bearing(const Numbers& now, Predicted& p) const {
+    void predict_bearing(const RabNumbers& now, Predicted& p) const {
         const std::size_t n = observables_[*bearing_].y.size();
         const double other = now.multipath;
         p.mean.assign(n, now.bearing_offset);
-        // The simulator's reflections turn by whole receivers, a third of them by none (physics/ir/burst_outcomes).
+        // The simulator's reflections turn by whole receivers, a third of them by none
+        // (physics/ir/burst_outcomes).
         p.lapse.assign(other > 0 ? n : 0, ring_ ? kTurned * other : other);
-        p.lapse_scale.assign(other > 0 ? n : 0, ring_ ? kWholeTurn : kTurn);
+        p.lapse_scale.assign(other > 0 ? n : 0, ring_ ? kWholeTurn : kReflectionTurn);
         if (ring_) {
             p.factor = bearing_factor_;
             const auto all = ring_readings(now);
@@ -317,7 +318,7 @@ class RabModel final : public ModelOf<Numbers> {
         return pull;
     }
 
-    void predict_reception(const Numbers& now, Predicted& p) const {
+    void predict_reception(const RabNumbers& now, Predicted& p) const {
         const Observable& o = observables_[*reception_];
         const std::size_t n = o.y.size();
         p.mean.resize(n);

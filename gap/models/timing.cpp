@@ -33,7 +33,7 @@ constexpr double kEven = 1e-3;            // coherence that even frames lack for
 constexpr double kLittle = 0.05;          // of what frames lack of keeping to a batch by themselves
 constexpr double kAsGood = 0.9;           // share of the coherence that noise would leave
 constexpr double kNeighbour = 1.01;       // nearer is the same peak
-constexpr std::size_t kTried = 3;         // peaks
+constexpr std::size_t kPeaksTried = 3;    // peaks
 constexpr double kShortestBatch = 0.001;  // s
 constexpr double kLongestAlias = 1.0;     // s: the longest that is believed of a batch
 constexpr int kMostTimes = 10;            // of a batch: its multiples and parts that are tried
@@ -42,17 +42,17 @@ constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is t
 constexpr double kFewSteps = 4.0;         // between quartiles: beyond, the middle half is the better
 constexpr double kNextSteps = 1.5;        // of a clock: between its next step and the one beyond
 constexpr double kWhole = 0.999;
-constexpr double kEdge = 1.5e-4;       // s: how sharply a program gives up, and grids of runs are known
-constexpr std::size_t kAround = 4;     // rows to either side: what errs by itself is no part of their line
-constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
+constexpr double kGivingUpEdge = 1.5e-4;  // s: how sharply a program gives up, and grids of runs are known
+constexpr std::size_t kAround = 4;        // rows to either side: what errs by itself is no part of their line
+constexpr double kLeastFading = 1e-9;     // of what is known of a frame, to the next
 
-struct Numbers {
+struct TimingNumbers {
     double extra_period = 0.0, period_jitter = 0.0, clock_drift = 0.0, i2c_stretch = 0.0, batch = 0.0,
            edge_errors = 0.0, overrun = 0.0, truncation = 0.0, truncation_burst = 0.0, baud_error = 0.0,
            answer_limit = 0.0;
 };
 
-class TimingModel final : public ModelOf<Numbers> {
+class TimingModel final : public ModelOf<TimingNumbers> {
   public:
     explicit TimingModel(const Experiment& experiment) {
         clocks_ = experiment.has("t_robot_s");
@@ -98,7 +98,7 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
-        const Numbers now = numbers(v);
+        const TimingNumbers now = numbers(v);
         out.resize(observables_.size());
         std::size_t o = 0;
         if (clocks_) predict_clock(now, out[o++]);
@@ -139,7 +139,7 @@ class TimingModel final : public ModelOf<Numbers> {
             }
         }
         std::sort(peaks.rbegin(), peaks.rend());
-        peaks.resize(std::min(peaks.size(), kTried));
+        peaks.resize(std::min(peaks.size(), kPeaksTried));
         // Frames that are ready at even times keep to a batch's parts as well as to it: the finest, too.
         std::vector<double> found;
         double finest = kLongestBatch;
@@ -358,21 +358,21 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     void declare_all() {
-        declare({{&Numbers::extra_period, "timing.extra_period", "s"},
-                 {&Numbers::period_jitter, "timing.period_jitter", "s"},
-                 {&Numbers::clock_drift, "timing.clock_drift", "1"},
-                 {&Numbers::i2c_stretch, "timing.i2c_stretch", "s"},
-                 {&Numbers::batch, "timing.batch", "s"},
-                 {&Numbers::edge_errors, "timing.edge_errors", "1"},
-                 {&Numbers::overrun, "timing.overrun", "1"},
-                 {&Numbers::truncation, "timing.truncation", "1"},
-                 {&Numbers::truncation_burst, "timing.truncation_burst", "1"},
-                 {&Numbers::baud_error, "timing.baud_error", "1"}});
-        if (!frames_.empty()) declare({{&Numbers::answer_limit, "timing.answer_limit", "s"}});
+        declare({{&TimingNumbers::extra_period, "timing.extra_period", "s"},
+                 {&TimingNumbers::period_jitter, "timing.period_jitter", "s"},
+                 {&TimingNumbers::clock_drift, "timing.clock_drift", "1"},
+                 {&TimingNumbers::i2c_stretch, "timing.i2c_stretch", "s"},
+                 {&TimingNumbers::batch, "timing.batch", "s"},
+                 {&TimingNumbers::edge_errors, "timing.edge_errors", "1"},
+                 {&TimingNumbers::overrun, "timing.overrun", "1"},
+                 {&TimingNumbers::truncation, "timing.truncation", "1"},
+                 {&TimingNumbers::truncation_burst, "timing.truncation_burst", "1"},
+                 {&TimingNumbers::baud_error, "timing.baud_error", "1"}});
+        if (!frames_.empty()) declare({{&TimingNumbers::answer_limit, "timing.answer_limit", "s"}});
     }
 
     /// The first row of a run sets the zero.
-    void predict_clock(const Numbers& now, Predicted& p) const {
+    void predict_clock(const TimingNumbers& now, Predicted& p) const {
         const Observable& o = observables_[0];
         p.mean.resize(o.y.size());
         double zero = 0.0;
@@ -385,17 +385,17 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     /// What a frame takes after the loop has begun on it.
-    static double handling_of(const Numbers& now, const Frame& one) {
+    static double handling_of(const TimingNumbers& now, const Frame& one) {
         return one.wire / (1 + now.baud_error) + now.i2c_stretch * one.reads;
     }
 
     /// When a frame that is due by `clock` has come over the wire, up to the chain's zero.
-    double ready_at(const Numbers& now, double clock, const Frame& one) const {
+    double ready_at(const TimingNumbers& now, double clock, const Frame& one) const {
         const double longer = clocks_ ? 0.0 : now.extra_period;
         return clock * (1 + now.clock_drift) + longer * one.number + handling_of(now, one);
     }
 
-    std::vector<double> arrivals_ready(const Numbers& now) const {
+    std::vector<double> arrivals_ready(const TimingNumbers& now) const {
         std::vector<double> ready(arrivals().y.size());
         for (std::size_t i = 0; i < ready.size(); ++i)
             ready[i] = ready_at(now, robot_[i], arrived_[i]);
@@ -418,7 +418,7 @@ class TimingModel final : public ModelOf<Numbers> {
         return ready;
     }
 
-    void predict_arrival(const Numbers& now, Predicted& p) const {
+    void predict_arrival(const TimingNumbers& now, Predicted& p) const {
         const Observable& o = arrivals();
         const double batch = now.batch;
         const std::vector<double> arrival = arrivals_ready(now);
@@ -446,7 +446,7 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     /// The chance that a frame is not given up because its batch comes too late.
-    std::vector<double> in_time(const Numbers& now) const {
+    std::vector<double> in_time(const TimingNumbers& now) const {
         const Observable &whole = observables_[*ok_], &o = arrivals();
         std::vector<double> chance(whole.y.size(), 1.0);
         if (!(now.answer_limit > 0) || now.batch < shortest_ || is_fine_batch(now.batch)) return chance;
@@ -462,13 +462,13 @@ class TimingModel final : public ModelOf<Numbers> {
             for (; frame < chance.size() && before_next(frame); ++frame) {
                 const Frame& one = frames_[frame];
                 const double wait = grid.wait(ready_at(now, one.due, one));
-                chance[frame] = 1 / (1 + std::exp((wait - now.answer_limit) / kEdge));
+                chance[frame] = 1 / (1 + std::exp((wait - now.answer_limit) / kGivingUpEdge));
             }
         }
         return chance;
     }
 
-    void predict_frames(const Numbers& now, Predicted& p) const {
+    void predict_frames(const TimingNumbers& now, Predicted& p) const {
         const Observable& o = observables_[*ok_];
         const std::vector<double> kept_in_time = in_time(now);
         const double error = std::max(now.edge_errors, 0.0), cut = now.truncation,
@@ -489,7 +489,7 @@ class TimingModel final : public ModelOf<Numbers> {
         }
     }
 
-    void predict_shifts(const Numbers& now, Predicted& p) const {
+    void predict_shifts(const TimingNumbers& now, Predicted& p) const {
         fill_rows(p.mean, load_.size(), true,
                   [&](std::size_t i) { return 1 - kWhole + now.overrun * load_[i]; });
     }

@@ -19,7 +19,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kReplicates = 199, kFewer = 99;  // of many rows: each costs a prediction and a filter
-constexpr std::size_t kManyRows = 20000;
+constexpr std::size_t kManyCheckedRows = 20000;
 
 /// Measured minus shown, both as far as the instrument reaches; of a sum what each row adds, in the
 /// observable's unit.
@@ -87,7 +87,7 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
         }
         return checks;
     };
-    const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;
+    const std::size_t count = study.rows() > kManyCheckedRows ? kFewer : kReplicates;
     auto checks = replicate_until(count);
     const bool doubtful = std::ranges::any_of(checks, [](const PredictiveCheck& check) {
         return std::ranges::any_of(

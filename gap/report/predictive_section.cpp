@@ -17,7 +17,8 @@ namespace puckloop::gap::report {
 
 namespace {
 
-constexpr double kWidth = 228, kHeight = 172, kHeading = 24;  // of a panel and of a check's heading, pixels
+constexpr double kPanelWidth = 228, kPanelHeight = 172,
+                 kHeading = 24;  // of a panel and of a check's heading, pixels
 constexpr std::size_t kColumns = 3;
 constexpr const char* kData = "#222222";
 
@@ -76,11 +77,11 @@ std::string panel(const PredictiveCheck& check, const PredictiveCurve& curve) {
     chart.dots(x, measured, kData);
     if (curve.name != "marginal law" && curve.name != "spread per run") chart.level(0);
     chart.categories(curve.categories);
-    return chart.svg(kWidth, kHeight);
+    return chart.svg(kPanelWidth, kPanelHeight);
 }
 
 double height_of(const PredictiveCheck& check) {
-    return kHeading + kHeight * static_cast<double>((check.curves.size() + kColumns - 1) / kColumns);
+    return kHeading + kPanelHeight * static_cast<double>((check.curves.size() + kColumns - 1) / kColumns);
 }
 
 std::string heading(const PredictiveCheck& check, double top) {
@@ -90,11 +91,11 @@ std::string heading(const PredictiveCheck& check, double top) {
            fmt::format(
                "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"14\" height=\"10\" fill=\"{}\" "
                "fill-opacity=\"0.3\"/>\n<circle cx=\"{:.0f}\" cy=\"{:.0f}\" r=\"2.5\" fill=\"{}\"/>\n",
-               2 * kWidth - 70, top + 7, check.extended ? kAfter : kBefore, 3 * kWidth - 72, top + 12,
-               kData) +
-           svg_text(2 * kWidth - 52, top + 16,
+               2 * kPanelWidth - 70, top + 7, check.extended ? kAfter : kBefore, 3 * kPanelWidth - 72,
+               top + 12, kData) +
+           svg_text(2 * kPanelWidth - 52, top + 16,
                     fmt::format("90 % of {} replicated data sets", check.replicates), "") +
-           svg_text(3 * kWidth - 64, top + 16, "measured", "");
+           svg_text(3 * kPanelWidth - 64, top + 16, "measured", "");
 }
 
 std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
@@ -103,12 +104,12 @@ std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
     for (const PredictiveCheck* check : checks) {
         body += heading(*check, top);
         for (std::size_t k = 0; k < check->curves.size(); ++k)
-            body += svg_moved(kWidth * static_cast<double>(k % kColumns),
-                              top + kHeading + kHeight * static_cast<double>(k / kColumns),
+            body += svg_moved(kPanelWidth * static_cast<double>(k % kColumns),
+                              top + kHeading + kPanelHeight * static_cast<double>(k / kColumns),
                               panel(*check, check->curves[k]));
         top += height_of(*check);
     }
-    return svg_document(kColumns * kWidth, top, 10, body);
+    return svg_document(kColumns * kPanelWidth, top, 10, body);
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ constexpr double kTrim = 4.0;             // deviations
 constexpr std::size_t kKept = 60;         // columns that a pursuit looks at, the best by themselves
 constexpr std::size_t kMostTerms = 4;     // of a pursuit
 constexpr double kMostDeviations = 10.0;  // that a term may move an innovation, root mean square
-constexpr Effort kEffort{.iterations = 12};
-constexpr std::size_t kManyRows = 6000;
+constexpr Effort kSumEffort{.iterations = 12};
+constexpr std::size_t kManyResidualRows = 6000;
 constexpr double kStill = 1e-9;                 // root mean square of increments: nothing moves
 constexpr double kCalmer[] = {1.0, 0.1, 0.01};  // shares of the fitted drift; structure looks like drift
 
@@ -291,7 +291,7 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
                      std::uint64_t seed) {
     const Observable& observable = model.observables()[o];
     // Where rows are many, covariates by themselves only: their pairs would take minutes.
-    if (observable.y.size() > kManyRows)
+    if (observable.y.size() > kManyResidualRows)
         std::erase_if(cells, [](const stats::Component& one) { return one.pair; });
     FreeForm form;
     form.observable = observable.name;
@@ -323,7 +323,7 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
                 freed.push_back({k, -kMostDeviations * size, kMostDeviations * size, size});
             }
             State start{with.neutral(), {state.noise[o]}};
-            Correction made{&from, std::move(terms), fit(with, freed, start, weights, kEffort), 0.0, {}};
+            Correction made{&from, std::move(terms), fit(with, freed, start, weights, kSumEffort), 0.0, {}};
             const State& end = made.fitted.state;
             made.cost = costs_at(with, end, with.predicted(end.values)).front().cost;
             made.merit = made.fitted.log_likelihood - from.chance() * static_cast<double>(made.terms.size());

@@ -6,13 +6,13 @@
 namespace puckloop::gap::stats {
 
 namespace {
-constexpr std::size_t kEnoughRuns = 5;
+constexpr std::size_t kEnoughRunsToResample = 5;
 constexpr int kBandDraws = 200;
 }  // namespace
 
 std::vector<std::vector<std::size_t>> bootstrap_rows(const Series& series, int draws, RandomStream& random) {
     std::vector<Stretch> units = runs_of(series.run);
-    if (units.size() < kEnoughRuns) units = blocks_of(series.run, block_length(series));
+    if (units.size() < kEnoughRunsToResample) units = blocks_of(series.run, block_length(series));
     std::vector<std::vector<std::size_t>> result(static_cast<std::size_t>(draws));
     for (auto& rows : result)
         for (std::size_t u = 0; u < units.size(); ++u) {

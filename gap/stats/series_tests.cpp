@@ -19,7 +19,7 @@ constexpr double kNormalWild = 6.33e-5;  // share of a normal sample beyond, bot
 // Allowed before the tail counts as heavy: residuals of a good model are seldom quite normal.
 constexpr double kAllowedShare = 2e-3;
 // Stretches whose scatter is compared: so few, and so long, that each knows its own to a fifth.
-constexpr std::size_t kStretches = 4, kStretchRows = 12;
+constexpr std::size_t kTestedStretches = 4, kStretchRows = 12;
 
 /// P(difference = 0) of a bell-shaped histogram of differences, from its places at one and two quanta.
 double repeats_of_bell(const Series& series) {
@@ -141,7 +141,7 @@ Finding evenness_test(const Series& residual, const TestOptions& options) {
     Finding finding{.test = "evenness", .covariate = "stretch of a run", .effect_unit = "ratio - 1"};
     std::vector<Stretch> stretches;
     for (const Stretch& run : runs_of(kept.run)) {
-        const std::size_t parts = std::clamp<std::size_t>(run.size() / kStretchRows, 1, kStretches);
+        const std::size_t parts = std::clamp<std::size_t>(run.size() / kStretchRows, 1, kTestedStretches);
         for (std::size_t k = 0; k < parts; ++k)
             stretches.push_back(
                 {run.first + k * run.size() / parts, run.first + (k + 1) * run.size() / parts, run.run});

@@ -27,17 +27,17 @@ constexpr double kFiner = 4.0;           // steps of frequency in one turn more 
 constexpr std::size_t kSearched = 2500;  // rows: the beat is looked for in so many, then followed
 constexpr double kUneven = 0.05;         // share of the time between rows
 constexpr double kEvenRows = 0.95;       // share of rows that must be even
-constexpr double kMostMissing =
+constexpr double kMostFramesMissing =
     4.0;  // times as long as the rows alone would last: no beat is kept over long gaps
 constexpr double kOutlier = 6.0;           // sd: pushes and lost sight are left out
-constexpr double kEvidence = 60.0;         // deviance
+constexpr double kFrameEvidence = 60.0;    // deviance
 constexpr double kEvidenceBesides = 30.0;  // of a run whose frames are as long as those of the clear ones
 constexpr double kAlone = 4.0;       // times what stands out without it: rows late at random have many lines
 constexpr double kLeastClear = 0.5;  // share of runs
 constexpr double kAlike = 0.3;       // by how much frames of different runs may differ in length: noise
 constexpr double kLongest = 0.9;     // of the time between rows: longer, and rows repeat frames
 constexpr double kPhaseStep = 0.03;  // of a turn
-constexpr int kRounds = 5, kReach = 4;  // of the search for frequency and phase, and its width in steps
+constexpr int kSearchRounds = 5, kReach = 4;  // of the search for frequency and phase, and its width in steps
 
 /// What tracker and counters disagree about from row to row, and what lateness would make of it: an error is
 /// minus the change of rate times lateness.
@@ -93,7 +93,7 @@ std::optional<double> even_step(const std::vector<double>& time) {
     });
     const auto count = static_cast<double>(spaces.size());
     if (static_cast<double>(even) < kEvenRows * count) return std::nullopt;
-    if (time.back() - time.front() > kMostMissing * count * step) return std::nullopt;
+    if (time.back() - time.front() > kMostFramesMissing * count * step) return std::nullopt;
     return step;
 }
 
@@ -213,7 +213,7 @@ Sawtooth polished(const Disagreement& all, const Stretch& part, Sawtooth best, d
     const double middle = (all.time[part.from] + all.time[part.to - 1]) / 2;
     double turn = kPhaseStep;
     best = matched(all, part, best.beat, best.phase);
-    for (int round = 0; round < kRounds; ++round, step /= 2, turn /= 2) {
+    for (int round = 0; round < kSearchRounds; ++round, step /= 2, turn /= 2) {
         const Sawtooth centre = best;
         for (int i = -kReach; i <= kReach; ++i)
             for (int j = -kReach; j <= kReach; ++j) {
@@ -277,7 +277,7 @@ FrameBeat beat_of(const CountedPath& path) {
             sum.error[i] -= effect_of(sum, i, late(i - 1), late(i));
     const double next = deviance(all, searched, best_sinusoid(all, searched, finer).gain);
     beat.clear =
-        beat.evidence > kEvidence && there > kAlone * next && std::abs(beat.period) < kLongest * *step;
+        beat.evidence > kFrameEvidence && there > kAlone * next && std::abs(beat.period) < kLongest * *step;
     return beat;
 }
 

@@ -106,8 +106,8 @@ void check_size(Experiment& experiment, const ColumnInfo& info) {
 
 // ---- one column against another
 
-constexpr double kG = 9.80665;   // m/s2
-constexpr std::size_t kFew = 8;  // rows that show nothing
+constexpr double kG = 9.80665;             // m/s2
+constexpr std::size_t kFewRowsOfUnit = 8;  // rows that show nothing
 
 double at(const Run& run, std::string_view column, std::size_t row) {
     const auto& values = run.column(column);
@@ -229,7 +229,8 @@ void check_follows(Experiment& experiment) {
 }  // namespace
 
 double Pairs::factor(double together) const {
-    if (seen.size() < kFew || !(std::abs(stats::correlation(expected, seen)) >= together)) return NAN;
+    if (seen.size() < kFewRowsOfUnit || !(std::abs(stats::correlation(expected, seen)) >= together))
+        return NAN;
     return stats::standard_deviation(seen) / stats::standard_deviation(expected);
 }
 
@@ -243,7 +244,7 @@ double Pairs::ratio() const {
             same += seen[i] * expected[i] > 0 ? 1 : 0;
         }
     const auto n = static_cast<double>(logs.size());
-    if (logs.size() < kFew || !(std::abs(2 * same / n - 1) >= 2 * kSame - 1)) return NAN;
+    if (logs.size() < kFewRowsOfUnit || !(std::abs(2 * same / n - 1) >= 2 * kSame - 1)) return NAN;
     const bool wide = stats::quantile(logs, 0.75) - stats::quantile(logs, 0.25) > std::log(kFar);
     return wide ? NAN : std::copysign(std::exp(stats::median(logs)), 2 * same - n);
 }

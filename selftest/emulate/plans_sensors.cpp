@@ -13,15 +13,17 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr const char* kOpenFloor = "[arena]\nsize = [\"6 m\", \"6 m\"]\n";
+constexpr double kSensorDegree = std::numbers::pi / 180;
+constexpr const char* kSensorFloor = "[arena]\nsize = [\"6 m\", \"6 m\"]\n";
 constexpr double kTurnSpeed = 216, kTurnSeconds = 0.5;  // steps/s: about 30 degrees
 constexpr double kLook = 0.8;                           // s at each stop
 constexpr double kSpinSpeed = 400, kSpinSeconds = 8;
 constexpr double kAwaySpeed = 300;
-constexpr double kNearest = 0.07, kGrowth = 1.23;  // m from the loudspeaker to the axle, and of each hop
-constexpr double kWindow = 100;                    // samples, the firmware's
-constexpr double kPlaceQuantum = 1e-4, kAngleQuantum = 1e-4;  // m and rad, of the measuring table
+constexpr double kNearestSpeaker = 0.07,
+                 kGrowth = 1.23;  // m from the loudspeaker to the axle, and of each hop
+constexpr double kWindow = 100;   // samples, the firmware's
+constexpr double kPlannedPlaceQuantum = 1e-4,
+                 kPlannedAngleQuantum = 1e-4;  // m and rad, of the measuring table
 
 void then(Act& act, double seconds, double left, double right) {
     double& now = act.commands.back().seconds;  // the last command is the end so far
@@ -33,7 +35,7 @@ void then(Act& act, double seconds, double left, double right) {
 Act begun(const std::string& part) {
     Act act;
     act.conditions = {{"part", part}};
-    act.arena = kOpenFloor;
+    act.arena = kSensorFloor;
     act.commands = {{0, 0, 0}};
     then(act, kLook, 0, 0);
     return act;
@@ -114,9 +116,9 @@ std::vector<Act> microphone_acts(std::uint64_t seed, bool brief) {
         for (const double facing : {0.0, 50.0, 180.0, 230.0}) {
             if (brief && facing != 0.0) continue;
             Act act = begun("away");
-            act.heading = facing * kDegree + 0.2 * (random.uniform() - 0.5);
+            act.heading = facing * kSensorDegree + 0.2 * (random.uniform() - 0.5);
             const double sense = std::cos(act.heading) > 0 ? 1 : -1;
-            double distance = kNearest;
+            double distance = kNearestSpeaker;
             for (int k = 0; k < (brief ? 3 : 10); ++k) {
                 const double hop = distance * (kGrowth - 1);
                 const double seconds =
@@ -126,7 +128,7 @@ std::vector<Act> microphone_acts(std::uint64_t seed, bool brief) {
                 then(act, kLook, 0, 0);
                 distance += hop;
             }
-            add(std::move(act), kNearest);
+            add(std::move(act), kNearestSpeaker);
         }
     return acts;
 }
@@ -145,8 +147,8 @@ WrittenRun microphone_run(const std::vector<Row>& rows) {
                 std::remainder(std::atan2(dy, dx) - r.theta - drawn.direction[i], 2 * std::numbers::pi);
             run.column("t_s", "s").values.push_back(r.powered);
             run.column("mic").values.push_back(static_cast<double>(i));
-            run.column("distance_m", "m").values.push_back(rounded(std::hypot(dx, dy), kPlaceQuantum));
-            run.column("angle_rad", "rad").values.push_back(rounded(off, kAngleQuantum));
+            run.column("distance_m", "m").values.push_back(rounded(std::hypot(dx, dy), kPlannedPlaceQuantum));
+            run.column("angle_rad", "rad").values.push_back(rounded(off, kPlannedAngleQuantum));
             run.column("amplitude", "counts").values.push_back(kSpeakerLevel);
             run.column("window").values.push_back(kWindow);
             run.column("motor_speed", "steps/s").values.push_back(motor_speed(r));
@@ -201,8 +203,8 @@ WrittenRun accelerometer_run(const std::vector<Row>& rows, const Act& act) {
         const double pitch = std::asin(c * gx + s * gy);
         const double roll = std::asin((c * gy - s * gx) / std::cos(pitch));
         run.column("t_s", "s").values.push_back(r.powered);
-        run.column("pitch_rad", "rad").values.push_back(rounded(pitch, kAngleQuantum));
-        run.column("roll_rad", "rad").values.push_back(rounded(roll, kAngleQuantum));
+        run.column("pitch_rad", "rad").values.push_back(rounded(pitch, kPlannedAngleQuantum));
+        run.column("roll_rad", "rad").values.push_back(rounded(roll, kPlannedAngleQuantum));
         run.column("motor_speed", "steps/s").values.push_back(motor_speed(r));
         const char* const axes[] = {"ax", "ay", "az"};
         for (std::size_t i = 0; i < 3; ++i)

@@ -15,12 +15,12 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kStanding = 3.0;        // s: the mean of 25 windows is good to 2.4 %
-constexpr double kSettled = 0.45;        // s after which rows count
-constexpr std::size_t kPlacements = 24;  // of many every so-many-th, in order
-constexpr double kFine = 1e-4;           // m and rad: closer placements are one
-constexpr double kLevel = 300.0;         // counts at 0.1 m, where nothing is stated (gap/models/microphone)
-constexpr double kFarthest = 100.0;      // m
+constexpr double kSensorStanding = 3.0;        // s: the mean of 25 windows is good to 2.4 %
+constexpr double kSettledRows = 0.45;          // s after which rows count
+constexpr std::size_t kSensorPlacements = 24;  // of many every so-many-th, in order
+constexpr double kSensorFine = 1e-4;           // m and rad: closer placements are one
+constexpr double kLevel = 300.0;     // counts at 0.1 m, where nothing is stated (gap/models/microphone)
+constexpr double kFarthest = 100.0;  // m
 constexpr const char* kOpenFloor = "[arena]\nsize = [\"4 m\", \"4 m\"]\nwalls = false\n";
 
 using Place = std::array<long, 4>;
@@ -30,7 +30,7 @@ std::vector<React> some_of(Places& places) {
     std::vector<React> all;
     for (auto& [place, react] : places)
         all.push_back(std::move(react));
-    return spread_of(all, kPlacements);
+    return spread_of(all, kSensorPlacements);
 }
 
 void add_row(Places& places, const Place& place, const React& react, std::size_t run, std::size_t row) {
@@ -44,7 +44,7 @@ std::vector<double> settled(const std::vector<Row>& emulated,
                             const std::function<double(const Row&)>& value) {
     std::vector<double> values;
     for (const Row& row : emulated)
-        if (row.t >= kSettled && row.ok && !std::isnan(value(row))) values.push_back(value(row));
+        if (row.t >= kSettledRows && row.ok && !std::isnan(value(row))) values.push_back(value(row));
     return values;
 }
 
@@ -68,10 +68,10 @@ std::vector<React> microphone_reacts(const Experiment& experiment, std::string& 
             react.act.arena =
                 kOpenFloor + speaker_table(drawn.x[react.sensor] + distance * std::cos(way),
                                            drawn.y[react.sensor] + distance * std::sin(way), level);
-            react.act.commands = {{0, 0, 0}, {kStanding, 0, 0}};
+            react.act.commands = {{0, 0, 0}, {kSensorStanding, 0, 0}};
             add_row(places,
-                    {static_cast<long>(mic), std::lround(distance / kFine), std::lround(angle / kFine),
-                     std::lround(level)},
+                    {static_cast<long>(mic), std::lround(distance / kSensorFine),
+                     std::lround(angle / kSensorFine), std::lround(level)},
                     react, r, i);
         }
     auto chosen = some_of(places);
@@ -97,8 +97,9 @@ std::vector<React> accelerometer_reacts(const Experiment& experiment, std::strin
             react.act.arena = kOpenFloor;
             react.act.slope_x = pitch;  // the robot looks along x
             react.act.slope_y = across;
-            react.act.commands = {{0, 0, 0}, {kStanding, 0, 0}};
-            add_row(places, {std::lround(pitch / kFine), std::lround(roll / kFine), 0, 0}, react, r, i);
+            react.act.commands = {{0, 0, 0}, {kSensorStanding, 0, 0}};
+            add_row(places, {std::lround(pitch / kSensorFine), std::lround(roll / kSensorFine), 0, 0}, react,
+                    r, i);
         }
     auto chosen = some_of(places);
     if (chosen.empty()) why = "no row of a robot that stands, tilted by 0.2 rad or less";

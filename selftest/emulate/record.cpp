@@ -21,14 +21,14 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kPlaceNoise = 0.0005, kPlaceQuantum = 1e-4;         // m, of the tracker
-constexpr double kAngleNoise = 0.2 * kDegree, kAngleQuantum = 1e-4;  // rad
-constexpr double kJigNoise = 1e-6;                                   // m: a measuring table's
-constexpr double kHostNoise = 2e-4;                                  // s, of the host's time stamps
+constexpr double kRecordedDegree = std::numbers::pi / 180;
+constexpr double kPlaceNoise = 0.0005, kPlaceQuantum = 1e-4;                 // m, of the tracker
+constexpr double kAngleNoise = 0.2 * kRecordedDegree, kAngleQuantum = 1e-4;  // rad
+constexpr double kJigNoise = 1e-6;                                           // m: a measuring table's
+constexpr double kHostNoise = 2e-4;                                          // s, of the host's time stamps
 constexpr double kTransferTime = 1.9e-4;  // s: address, register or value, STOP at 100 kHz
 constexpr double kClockReading = 1e-6;    // s: what the recorder's loop takes beside its sleeps
-constexpr double kMostSlanting = 65 * kDegree, kFurthest = 0.11;
+constexpr double kMostSlanting = 65 * kRecordedDegree, kFurthest = 0.11;
 constexpr double kClearOfEdge = 0.008;  // m: a row 0.1 s late is still on the same stripe
 /// Commands reach the motors this much after the row's time; found by fitting unchanged robots.
 constexpr double kCommandLatency = 0.0033;  // s
@@ -76,7 +76,7 @@ WrittenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStr
             run.column("t_s", "s").values.push_back(r.powered);
             run.column("sensor").values.push_back(static_cast<double>(i));
             run.column("distance_m", "mm").values.push_back(gap * 1e3);
-            run.column("angle_rad", "deg").values.push_back(-way / kDegree);
+            run.column("angle_rad", "deg").values.push_back(-way / kRecordedDegree);
             run.column("ambient").values.push_back(lamp ? 1 : 0);
             run.column("reading", "counts").values.push_back(r.ps[i]);
             // Of the exchange before, standing too: a reading is ambient minus lit, and would share the

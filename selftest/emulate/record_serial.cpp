@@ -12,7 +12,7 @@ namespace puckloop::gap::emulate {
 namespace {
 
 constexpr double kAnalyserNoise = 1e-7;  // s
-constexpr std::size_t kStart = 6;        // column of a trace: when the start bit begins
+constexpr std::size_t kStartColumn = 6;  // column of a trace: when the start bit begins
 constexpr double kApart = 1.5;           // bytes: more is the next answer
 constexpr std::size_t kAnswers = 24, kBriefAnswers = 8;
 constexpr double kSeconds = 4.0, kBriefSeconds = 1.5;
@@ -24,7 +24,7 @@ std::vector<double> start_bits(const std::filesystem::path& trace) {
     std::vector<double> times;
     while (std::getline(in, line)) {
         if (line.find(",robot0.uart,robot0.pic,uart,") == std::string::npos) continue;
-        (void)csv_number(csv_cells(line, ',').at(kStart), times.emplace_back());
+        (void)csv_number(csv_cells(line, ',').at(kStartColumn), times.emplace_back());
     }
     return times;
 }

@@ -1,7 +1,7 @@
 #include "selftest/emulate/rerun_rab.h"
 
-#include "reproductions/rab/measure.h"
 #include "physics/description/parameters.h"
+#include "reproductions/rab/measure.h"
 #include "scenarios/reader/scenario.h"
 #include "selftest/emulate/record_rab.h"
 
@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kDistances = 12;  // at most so many are performed
 constexpr int kRepeats = 8;             // poses of a pair at a distance
 constexpr int kPairs = 24, kBriefPairs = 6;
-constexpr double kFine = 1e-3;     // m: closer distances are one
-constexpr double kFineRate = 0.1;  // Hz
+constexpr double kFineDistance = 1e-3;  // m: closer distances are one
+constexpr double kFineRate = 0.1;       // Hz
 constexpr int kRatePairs = 4, kRateRepeats = 72;
 constexpr std::size_t kFirstPoses = 32;  // of a rate, in which a slow host's queue fills: left out
 
@@ -64,7 +64,7 @@ std::vector<Message> measured(const Experiment& experiment) {
 std::vector<double> distances_of(const std::vector<Message>& messages, long rate) {
     std::map<long, std::size_t> counts;
     for (const Message& one : messages)
-        if (one.distance >= 0 && one.rate == rate) ++counts[std::lround(one.distance / kFine)];
+        if (one.distance >= 0 && one.rate == rate) ++counts[std::lround(one.distance / kFineDistance)];
     std::vector<std::pair<std::size_t, long>> most;
     for (const auto& [place, count] : counts)
         most.emplace_back(count, place);
@@ -72,7 +72,7 @@ std::vector<double> distances_of(const std::vector<Message>& messages, long rate
     most.resize(std::min(most.size(), kDistances));
     std::vector<double> distances;
     for (const auto& [count, place] : most)
-        distances.push_back(static_cast<double>(place) * kFine);
+        distances.push_back(static_cast<double>(place) * kFineDistance);
     std::sort(distances.begin(), distances.end());
     return distances;
 }
@@ -144,7 +144,7 @@ struct Seen {
 Seen seen_in(const std::vector<Message>& messages) {
     Seen seen;
     for (const Message& one : messages) {
-        seen.strength[{std::lround(one.distance / kFine), one.receiver}].add(one.strength);
+        seen.strength[{std::lround(one.distance / kFineDistance), one.receiver}].add(one.strength);
         seen.bearing[{0, one.receiver}].add(one.bearing_error);
         seen.received[{one.rate, 0}].add(one.received ? 1.0 : 0.0);
     }
