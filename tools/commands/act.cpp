@@ -22,7 +22,7 @@ namespace {
 constexpr double kPatience = 10.0;  // s of wall-clock time
 constexpr const char* kList = "list";
 
-struct Options {
+struct ActOptions {
     std::string run;
     std::vector<std::string> words;
     bool json = false;
@@ -49,7 +49,7 @@ void print_list(const nlohmann::json& reply) {
     fmt::print("commands:\n{}", verbs());
 }
 
-void act(const Options& options) {
+void act(const ActOptions& options) {
     std::string text;
     for (const std::string& word : options.words)
         text += (text.empty() ? "" : " ") + word;
@@ -72,7 +72,7 @@ void act(const Options& options) {
 }  // namespace
 
 void declare_act(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ActOptions>();
     Command* command = app.add_subcommand(
         "act", "do something to the world of a run that is on (run --realtime or --paced)");
     command->footer("Commands, as [[event]] tables of a scenario have them (docs/scenario.md):\n" + verbs() +

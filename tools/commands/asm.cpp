@@ -18,7 +18,7 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Arguments {
+struct AsmArguments {
     std::string file;
     std::string output = "-";
     std::string format = "hex";
@@ -50,7 +50,7 @@ std::string listing(const avr::Program& program) {
     return text;
 }
 
-std::string assemble_dspic(const Arguments& arguments, const std::string& file,
+std::string assemble_dspic(const AsmArguments& arguments, const std::string& file,
                            const dspic::DeviceInfo& device) {
     dspic::AssembleOptions options;
     options.file = file;
@@ -62,7 +62,8 @@ std::string assemble_dspic(const Arguments& arguments, const std::string& file,
     return options.keep_lines ? listing(program) : image::write_dspic_hex(program.words);
 }
 
-std::string assemble_avr(const Arguments& arguments, const std::string& file, const avr::DeviceInfo& device) {
+std::string assemble_avr(const AsmArguments& arguments, const std::string& file,
+                         const avr::DeviceInfo& device) {
     const bool list = arguments.format == "list";
     const avr::Program program = avr::assemble(read_text(arguments.file), {file, &device, list});
     if (program.bytes.empty()) throw InputError(file, "", "yields no program words", "instructions");
@@ -73,7 +74,7 @@ std::string assemble_avr(const Arguments& arguments, const std::string& file, co
     return image::write_intel_hex(segments.joined());
 }
 
-void run(const Arguments& arguments) {
+void run_asm(const AsmArguments& arguments) {
     const std::string file = arguments.file == "-" ? "stdin" : arguments.file;
     if (const dspic::DeviceInfo* device = dspic::find_device(arguments.mcu))
         write_text(arguments.output, assemble_dspic(arguments, file, *device));
@@ -87,7 +88,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void declare_asm(Command& app, int& status) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<AsmArguments>();
     Command* command =
         app.add_subcommand("asm", "Assemble dsPIC or AVR source; register names of the chip are known");
     command->add_option("FILE", arguments->file, "source file, - for standard input")->required();
@@ -100,7 +101,7 @@ void declare_asm(Command& app, int& status) {
     command->add_option("--mcu", arguments->mcu, "chip to assemble for; its register names are known")
         ->capture_default_str();
     command->callback([arguments, &status] {
-        run(*arguments);
+        run_asm(*arguments);
         status = 0;
     });
 }

@@ -21,12 +21,12 @@ namespace {
 
 constexpr int kMostThreads = 16, kMostRounds = 100, kMostRobots = 1000;
 
-struct Options {
+struct BenchCommandOptions {
     BenchOptions bench;
     bool json = false;
 };
 
-void run(const Options& options) {
+void run_bench(const BenchCommandOptions& options) {
     if (options.bench.interpret) chip::set_translation(false);
     if (const std::filesystem::path file = options.bench.scenario;
         !file.empty() && !std::filesystem::is_regular_file(file))
@@ -42,7 +42,7 @@ void run(const Options& options) {
 void declare_bench(Command& app, int& status) {
     Command* command =
         app.add_subcommand("bench", "measure the core and runs against a reference of this machine");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BenchCommandOptions>();
     BenchOptions& bench = options->bench;
     command
         ->add_option("--scenario", bench.scenario,
@@ -88,7 +88,7 @@ void declare_bench(Command& app, int& status) {
     declare_bench_bluetooth(*command, status);
     command->callback([options, command, &status] {
         if (command->subcommand_given()) return;
-        run(*options);
+        run_bench(*options);
         status = 0;
     });
 }

@@ -23,7 +23,7 @@ namespace {
 
 using bluetooth::Exchange;
 
-struct Options {
+struct BluetoothOptions {
     unsigned exchanges = 1000;
     bool boards = false;
     std::filesystem::path firmware;
@@ -58,7 +58,7 @@ std::string csv(const std::vector<Exchange>& exchanges) {
 }
 
 /// Modules with a host in this program.
-ExchangeTimes by_modules(const Options& options) {
+ExchangeTimes by_modules(const BluetoothOptions& options) {
     std::vector<Exchange> exchanges;
     exchanges.reserve(options.exchanges);
     for (unsigned i = 0; i < options.exchanges; ++i)
@@ -68,14 +68,14 @@ ExchangeTimes by_modules(const Options& options) {
 }
 
 /// Emulated boards with the firmware in the loop.
-ExchangeTimes by_boards(const Options& options) {
+ExchangeTimes by_boards(const BluetoothOptions& options) {
     const auto exchanges =
         exchange_on_boards({options.firmware, options.out / "run", options.exchanges, options.seed});
     write_file(options.out / "exchanges.csv", exchanges_csv(exchanges));
     return times_of(exchanges);
 }
 
-void run(const Options& options, int& status) {
+void run_bluetooth(const BluetoothOptions& options, int& status) {
     if (options.boards == options.firmware.empty())
         throw InputError("", "bench bluetooth", "emulated boards need a program, and nothing else does",
                          "--boards and --firmware IMAGE together");
@@ -92,7 +92,7 @@ void run(const Options& options, int& status) {
 void declare_bench_bluetooth(Command& bench, int& status) {
     Command* command = bench.add_subcommand(
         "bluetooth", "how long exchanges by Bluetooth take and how often they fail, as picture and table");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BluetoothOptions>();
     command
         ->add_option(
             "--exchanges", options->exchanges,
@@ -110,7 +110,7 @@ void declare_bench_bluetooth(Command& bench, int& status) {
         ->check(count_up_to(1'000'000'000))
         ->type_name("N");
     command->add_option("--out", options->out, "folder for the results")->type_name("DIR");
-    command->callback([options, &status] { run(*options, status); });
+    command->callback([options, &status] { run_bluetooth(*options, status); });
 }
 
 }  // namespace puckloop::tools

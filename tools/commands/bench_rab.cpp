@@ -22,14 +22,14 @@ namespace {
 
 constexpr double kCentimetres = 100;
 
-struct Options {
+struct RabOptions {
     RabMeasurement measurement;
     std::vector<double> distances_cm;
     std::vector<std::string> parameters;
     std::filesystem::path out = "out/rab";
 };
 
-void take_parameters(Options& options) {
+void take_parameters(RabOptions& options) {
     for (const std::string& text : options.parameters) {
         const auto equals = text.find('=');
         std::size_t used = 0;
@@ -54,7 +54,7 @@ std::string readings_csv(const RabMeasured& measured, const std::vector<double>&
     return csv;
 }
 
-void run(Options& options, int& status) {
+void run_rab(RabOptions& options, int& status) {
     RabMeasurement& what = options.measurement;
     if (options.distances_cm.empty())
         for (const auto& entry : physics::kPublishedStrengths)
@@ -90,7 +90,7 @@ void run(Options& options, int& status) {
 void declare_bench_rab(Command& bench, int& status) {
     Command* command = bench.add_subcommand(
         "rab", "range and bearing of two emulated boards against distance, as picture and table");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RabOptions>();
     RabMeasurement& what = options->measurement;
     command->add_option("--firmware", what.firmware, "image of the boards' firmware")
         ->required()
@@ -115,7 +115,7 @@ void declare_bench_rab(Command& bench, int& status) {
     command->add_option("--set", options->parameters, "a physical parameter over its default (repeatable)")
         ->type_name("NAME=NUMBER");
     command->add_option("--out", options->out, "folder for the results")->type_name("DIR");
-    command->callback([options, &status] { run(*options, status); });
+    command->callback([options, &status] { run_rab(*options, status); });
 }
 
 }  // namespace puckloop::tools

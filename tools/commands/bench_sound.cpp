@@ -23,14 +23,14 @@ namespace {
 
 constexpr double kSquareCentimetres = 1e4, kDegrees = 180 / std::numbers::pi, kMillimetres = 1000;
 
-struct Options {
+struct SoundCommandOptions {
     SoundOptions sound;
     std::filesystem::path radio;
     std::vector<std::string> experiments;
     std::filesystem::path out = "out/sound";
 };
 
-bool wanted(const Options& options, const char* name) {
+bool wanted(const SoundCommandOptions& options, const char* name) {
     return options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
                                                     name) != options.experiments.end();
 }
@@ -53,7 +53,7 @@ std::string shape_of(const std::vector<std::pair<double, double>>& places) {
                        fit->angle * kDegrees);
 }
 
-void run_ears(const Options& options, const TrialProgress& progress) {
+void run_ears(const SoundCommandOptions& options, const TrialProgress& progress) {
     const Ears ears = ears_and_radio(options.sound, progress);
     write_file(options.out / "ears.csv", heard_csv(ears));
     std::vector<std::pair<double, double>> places;
@@ -65,7 +65,7 @@ void run_ears(const Options& options, const TrialProgress& progress) {
     fmt::print("ears and radio, {:g} s: {}; {}\n", options.sound.walk_s, summary, shape_of(places));
 }
 
-void run_radio(const Options& options) {
+void run_radio(const SoundCommandOptions& options) {
     SoundOptions sound = options.sound;
     sound.walker = options.radio;
     const EarsRadio ears = ears_with_radio(sound);
@@ -86,7 +86,7 @@ void run_radio(const Options& options) {
                shape_of(places), exchange_table(times, sound.walker.filename().string()));
 }
 
-void run(Options& options, int& status) {
+void run_sound(SoundCommandOptions& options, int& status) {
     SoundOptions& sound = options.sound;
     const bool with_radio =
         wanted(options, "radio") && !(options.experiments.empty() && options.radio.empty());
@@ -128,7 +128,7 @@ void run(Options& options, int& status) {
 void declare_bench_sound(Command& bench, int& status) {
     Command* command = bench.add_subcommand(
         "sound", "published experiments with sound between robots, as pictures and tables (docs/sound.md)");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SoundCommandOptions>();
     SoundOptions& sound = options->sound;
     command
         ->add_option("--firmware", sound.firmware,
@@ -167,7 +167,7 @@ void declare_bench_sound(Command& bench, int& status) {
                      "physical parameters, such as \"microphone.motor_noise\" = 12 (docs/gap.md)")
         ->type_name("OVERLAY");
     command->add_option("--out", options->out, "folder for results (default out/sound)")->type_name("DIR");
-    command->callback([options, &status] { run(*options, status); });
+    command->callback([options, &status] { run_sound(*options, status); });
 }
 
 }  // namespace puckloop::tools

@@ -24,7 +24,7 @@ constexpr std::uint32_t kLargestWord = 0xFFFFFF;
 constexpr std::uint32_t kVectorsEnd30F = 0x100;
 constexpr std::uint32_t kVectorsEnd33F = 0x200;
 
-struct Arguments {
+struct DisasmArguments {
     std::string image;
     std::string start = "0";
     std::string end;  ///< empty: the last program address
@@ -44,7 +44,7 @@ std::uint32_t address(const std::string& text, const char* option, const image::
     return *value & ~1u;
 }
 
-std::string list_words(const Arguments& arguments) {
+std::string list_words(const DisasmArguments& arguments) {
     std::vector<std::uint32_t> words;
     for (const std::string& text : arguments.words) {
         const auto word = hexadecimal(text, kLargestWord);
@@ -69,7 +69,7 @@ std::string list_words(const Arguments& arguments) {
     return output;
 }
 
-std::string list_image(const Arguments& arguments) {
+std::string list_image(const DisasmArguments& arguments) {
     const image::Image image = image::load_image(arguments.image);
     dspic::ListingOptions options;
     options.start = address(arguments.start, "--start", &image);
@@ -92,7 +92,7 @@ std::string list_image(const Arguments& arguments) {
            dspic::list_program(words, options);
 }
 
-std::string list(const Arguments& arguments) {
+std::string list(const DisasmArguments& arguments) {
     if (const avr::DeviceInfo* part = avr::find_device(arguments.mcu))
         return disassemble_avr({arguments.image, arguments.start, arguments.end, arguments.words}, *part);
     if (!dspic::find_device(arguments.mcu))
@@ -104,7 +104,7 @@ std::string list(const Arguments& arguments) {
 }  // namespace
 
 void declare_disasm(Command& app, int& status) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<DisasmArguments>();
     Command* command = app.add_subcommand(
         "disasm", "Disassemble a dsPIC or AVR image or a few words; `asm` takes the result back");
     Option* image = command->add_option("IMAGE", arguments->image, "HEX, ELF or COFF image");

@@ -65,7 +65,7 @@ std::vector<std::uint8_t> fuse_bytes(const std::string& text) {
     return bytes;
 }
 
-struct Arguments {
+struct ExecArguments {
     exec::ExecOptions options;
     std::string fosc = "robot", fuses, revision = "1.2";
     std::vector<std::string> errata;
@@ -101,7 +101,7 @@ std::string guess_board(const std::string& image) {
     return board;
 }
 
-void describe(Command& app, Arguments& a) {
+void describe(Command& app, ExecArguments& a) {
     exec::ExecOptions& o = a.options;
     exec::TargetOptions& t = o.bench.target;
     auto* mcu = app.add_option("--mcu", o.bench.mcu,
@@ -270,14 +270,14 @@ void describe(Command& app, Arguments& a) {
 
 void declare_exec(Command& app, int& status) {
     Command* command = app.add_subcommand("exec", "run one chip or board alone on the bench");
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ExecArguments>();
     describe(*command, *arguments);
     command->footer("Examples:\n"
                     "  puckloop exec my.hex --uart1 - --seconds 2\n"
                     "  puckloop exec --board pic BTcom_default.hex --uart1 pty --realtime\n"
                     "  puckloop exec --mcu atmega1284p my.elf --stop-at main --json");
     command->callback([command, arguments, &status] {
-        Arguments& a = *arguments;
+        ExecArguments& a = *arguments;
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             a.options.bench.board = guess_board(a.options.image);
         start_log("exec", a.log);

@@ -12,16 +12,16 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Options {
+struct ExperimentCommandOptions {
     swarm::ExperimentOptions experiment;
     jobs::WorkerTask share;
     bool worker = false;
 };
 
-constexpr int kMostJobs = 256, kMostTasks = 10'000;
+constexpr int kMostExperimentJobs = 256, kMostExperimentTasks = 10'000;
 
 /// Status 1 if a run failed.
-int conduct(const Options& options) {
+int conduct(const ExperimentCommandOptions& options) {
     if (options.experiment.file.empty())
         throw InputError("", "experiment", "nothing given", "an experiment file (docs/swarm.md)");
     if (!options.worker) return swarm::run_experiment(options.experiment) ? 0 : 1;
@@ -32,7 +32,7 @@ int conduct(const Options& options) {
 }  // namespace
 
 void declare_experiment(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ExperimentCommandOptions>();
     Command* command = app.add_subcommand(
         "experiment",
         "run programs under conditions with many seeds, or what is left of them, and compare scores");
@@ -42,7 +42,7 @@ void declare_experiment(Command& app, int& status) {
         ->check(not_empty())
         ->type_name("DIR");
     command->add_option("--jobs,-j", experiment.jobs, "runs at a time on this machine (default: its cores)")
-        ->check(whole_number_between(1, kMostJobs))
+        ->check(whole_number_between(1, kMostExperimentJobs))
         ->type_name("N");
     command
         ->add_option(
@@ -53,7 +53,7 @@ void declare_experiment(Command& app, int& status) {
         ->type_name("CSV");
     command->add_flag("--slurm", experiment.slurm, "carry out the runs as job arrays of a Slurm cluster");
     command->add_option("--tasks", experiment.tasks, "with --slurm: tasks of an array")
-        ->check(whole_number_between(1, kMostTasks))
+        ->check(whole_number_between(1, kMostExperimentTasks))
         ->type_name("N")
         ->capture_default_str();
     command->add_flag("--fresh", experiment.fresh, "drop the results that are in the folder and begin again");
@@ -61,7 +61,9 @@ void declare_experiment(Command& app, int& status) {
     command->add_flag("--worker", options->worker)->group("");
     command->add_option("--cases", options->share.jobs)->group("");
     command->add_option("--results", options->share.results)->group("");
-    command->add_option("--task", options->share.task)->check(whole_number_between(0, kMostTasks))->group("");
+    command->add_option("--task", options->share.task)
+        ->check(whole_number_between(0, kMostExperimentTasks))
+        ->group("");
     command->footer("Examples:\n"
                     "  puckloop experiment scenarios/experiments/aggregation.toml\n"
                     "  puckloop experiment scenarios/experiments/aggregation.toml --against robots.csv");

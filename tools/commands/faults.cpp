@@ -18,7 +18,7 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Options {
+struct FaultsOptions {
     faults::CampaignOptions campaign;
     faults::WorkerTask worker;
     std::filesystem::path folder, replay_out;
@@ -32,7 +32,7 @@ void need(const std::filesystem::path& given, const char* place, const char* exp
 }
 
 /// Status 1 if the case is not what it was.
-int replay(const Options& options) {
+int replay(const FaultsOptions& options) {
     const faults::Results results = faults::read_results(options.folder);
     const std::filesystem::path out =
         options.replay_out.empty() ? results.out / "replay" / std::to_string(options.id) : options.replay_out;
@@ -47,7 +47,7 @@ int replay(const Options& options) {
     return 1;
 }
 
-void declare_campaign(Command& faults, const std::shared_ptr<Options>& options) {
+void declare_campaign(Command& faults, const std::shared_ptr<FaultsOptions>& options) {
     Command* command = faults.add_subcommand(
         "campaign", "run every fault of a campaign file against its scenario, or what is left of them");
     auto& campaign = options->campaign;
@@ -72,7 +72,7 @@ void declare_campaign(Command& faults, const std::shared_ptr<Options>& options) 
     });
 }
 
-void declare_worker(Command& faults, const std::shared_ptr<Options>& options) {
+void declare_worker(Command& faults, const std::shared_ptr<FaultsOptions>& options) {
     Command* command = faults.add_subcommand("worker", "runs cases of a campaign; campaigns start it");
     command->group("");
     auto& worker = options->worker;
@@ -88,7 +88,7 @@ void declare_worker(Command& faults, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 void declare_faults(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<FaultsOptions>();
     Command* command =
         app.add_subcommand("faults", "campaigns of injected faults: what each does to the mission");
     command->require_subcommand();

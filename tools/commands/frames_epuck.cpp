@@ -98,7 +98,7 @@ ordered_json fields_of(const EpuckSensors& s) {
     return fields;
 }
 
-ordered_json read(const std::string& text, const std::string& origin) {
+ordered_json read_epuck(const std::string& text, const std::string& origin) {
     const std::vector<std::uint8_t> bytes = bytes_of(text, origin);
     const std::span all(bytes);
     switch (bytes.size()) {
@@ -133,7 +133,7 @@ void decode(const std::vector<std::string>& words, bool json) {
     if (!words.empty()) records.emplace_back(fmt::format("{}", fmt::join(words, " ")));
     bool first = true;
     for_each_input(records, [&](const std::string& text, const std::string& origin) {
-        const ordered_json fields = read(text, origin);
+        const ordered_json fields = read_epuck(text, origin);
         std::cout << (json ? fields.dump() + "\n" : (first ? "" : "\n") + as_text(fields));
         first = false;
     });

@@ -24,7 +24,7 @@ using namespace protocols;
 constexpr double kMostMicroseconds = 1e9;
 constexpr std::size_t kMostEdges = 1000;
 
-struct Arguments {
+struct IrcomArguments {
     std::string timing = "nominal";
     std::vector<std::string> inputs;
     bool json = false;
@@ -41,7 +41,7 @@ double microseconds(cosim::Time time) {
     return static_cast<double>(time) / static_cast<double>(cosim::kMicrosecond);
 }
 
-void encode(const Arguments& arguments) {
+void encode_ircom_words(const IrcomArguments& arguments) {
     const IrcomTiming timing = timing_of(arguments.timing);
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
         const auto word = static_cast<std::uint8_t>(
@@ -105,7 +105,7 @@ std::string json_of(const IrcomReading& reading) {
 }
 
 /// Answers for each word; the status is 1 if any was bad.
-void read(const Arguments& arguments, int& status, bool fields) {
+void read_ircom_edges(const IrcomArguments& arguments, int& status, bool fields) {
     status = 0;
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
         const IrcomReading reading = read_ircom(edges_of(text, origin));
@@ -120,8 +120,8 @@ void read(const Arguments& arguments, int& status, bool fields) {
 }
 
 template <typename Act>
-void declare(Command& ircom, const char* name, const char* help, bool takes_edges, Act act) {
-    auto arguments = std::make_shared<Arguments>();
+void declare_ircom(Command& ircom, const char* name, const char* help, bool takes_edges, Act act) {
+    auto arguments = std::make_shared<IrcomArguments>();
     Command* command = ircom.add_subcommand(name, help);
     if (!takes_edges)
         command->add_option("--timing", arguments->timing,
@@ -138,11 +138,14 @@ void declare(Command& ircom, const char* name, const char* help, bool takes_edge
 void declare_ircom_frames(Command& frames, int& status) {
     Command* ircom = frames.add_subcommand("ircom", "Infra-red words of e-puck and TAM, as edges of light");
     ircom->require_subcommand(1);
-    declare(*ircom, "encode", "Print the edges of a word in microseconds, the first at 0", false, encode);
-    declare(*ircom, "decode", "Print the word of a line of edges, or what is wrong; status 1 if it is bad",
-            true, [&status](const Arguments& arguments) { read(arguments, status, true); });
-    declare(*ircom, "check", "Print ok or what is wrong, edges counted from 0; status 1 if a word is bad",
-            true, [&status](const Arguments& arguments) { read(arguments, status, false); });
+    declare_ircom(*ircom, "encode", "Print the edges of a word in microseconds, the first at 0", false,
+                  encode_ircom_words);
+    declare_ircom(*ircom, "decode",
+                  "Print the word of a line of edges, or what is wrong; status 1 if it is bad", true,
+                  [&status](const IrcomArguments& arguments) { read_ircom_edges(arguments, status, true); });
+    declare_ircom(*ircom, "check",
+                  "Print ok or what is wrong, edges counted from 0; status 1 if a word is bad", true,
+                  [&status](const IrcomArguments& arguments) { read_ircom_edges(arguments, status, false); });
 }
 
 }  // namespace puckloop::tools

@@ -26,7 +26,7 @@ constexpr std::string_view kMissedFollowed = "a payload bit and the check's lowe
 
 constexpr char kRow[] = "{:<20}{:>6}{:>10}{:>12}{:>8}{:>7}{:>8}\n";
 
-struct Arguments {
+struct RabArguments {
     std::string size;
     std::vector<std::string> inputs;  ///< payloads or chips
     bool json = false;
@@ -59,7 +59,7 @@ ordered_json fields_of(int size, std::uint32_t payload, int check) {
             {"check", check}};
 }
 
-void encode(const Arguments& arguments) {
+void encode_rab_frames(const RabArguments& arguments) {
     const int size = size_of(arguments.size, 16);
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
         const std::uint32_t payload = payload_of(text, size, origin);
@@ -87,7 +87,7 @@ std::string json_of(const RabFrameReading& reading) {
 }
 
 /// Answers for each frame; the status is 1 if any was bad.
-void read(const Arguments& arguments, int& status, bool fields) {
+void read_rab_frames(const RabArguments& arguments, int& status, bool fields) {
     const int size = size_of(arguments.size, 0);
     status = 0;
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
@@ -114,7 +114,7 @@ ordered_json json_of(const RabErrorCount& count) {
             {"missed_because", {{"swap", count.missed_swap}, {"check_follows", count.missed_followed}}}};
 }
 
-void classify(const Arguments& arguments) {
+void classify(const RabArguments& arguments) {
     const int size = size_of(arguments.size, 16);
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
         const std::uint32_t payload = payload_of(text, size, origin);
@@ -139,8 +139,8 @@ void classify(const Arguments& arguments) {
 
 /// A subcommand with --size, --json and its input; `act` runs in its callback.
 template <typename Act>
-void declare(Command& rab, const char* name, const char* help, bool takes_chips, Act act) {
-    auto arguments = std::make_shared<Arguments>();
+void declare_rab(Command& rab, const char* name, const char* help, bool takes_chips, Act act) {
+    auto arguments = std::make_shared<RabArguments>();
     Command* command = rab.add_subcommand(name, help);
     command->add_option("--size", arguments->size,
                         takes_chips ? "payload bits: 8, 16, 24 or 32 (default: by the length)"
@@ -156,15 +156,16 @@ void declare(Command& rab, const char* name, const char* help, bool takes_chips,
 void declare_rab_frames(Command& frames, int& status) {
     Command* rab = frames.add_subcommand("rab", "Infra-red frames of the range-and-bearing board, as chips");
     rab->require_subcommand(1);
-    declare(*rab, "encode", "Print the chips of a payload, 1 = carrier on", false, encode);
-    declare(*rab, "decode",
-            "Print size, payload and check of a frame, or what is wrong; status 1 if it is bad", true,
-            [&status](const Arguments& arguments) { read(arguments, status, true); });
-    declare(*rab, "check", "Say ok or what is wrong, chips counted from 0; status 1 if a frame is bad", true,
-            [&status](const Arguments& arguments) { read(arguments, status, false); });
-    declare(*rab, "errors",
-            "Do every small error to a frame: what the reader finds, by what, and misses, why", false,
-            classify);
+    declare_rab(*rab, "encode", "Print the chips of a payload, 1 = carrier on", false, encode_rab_frames);
+    declare_rab(*rab, "decode",
+                "Print size, payload and check of a frame, or what is wrong; status 1 if it is bad", true,
+                [&status](const RabArguments& arguments) { read_rab_frames(arguments, status, true); });
+    declare_rab(*rab, "check", "Say ok or what is wrong, chips counted from 0; status 1 if a frame is bad",
+                true,
+                [&status](const RabArguments& arguments) { read_rab_frames(arguments, status, false); });
+    declare_rab(*rab, "errors",
+                "Do every small error to a frame: what the reader finds, by what, and misses, why", false,
+                classify);
 }
 
 }  // namespace puckloop::tools

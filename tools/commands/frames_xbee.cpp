@@ -25,7 +25,7 @@ using namespace protocols;
 
 constexpr std::size_t kMostData = 65535;
 
-struct Arguments {
+struct XbeeArguments {
     std::string mode = "2";
     std::vector<std::string> inputs;
     bool json = false;
@@ -180,7 +180,7 @@ XBeeMessage message_of(const std::string& text, const std::string& origin, std::
 
 // --- commands ----------------------------------------------------------------------------------------------
 
-void encode_all(const Arguments& arguments) {
+void encode_all(const XbeeArguments& arguments) {
     const XBeeApiMode mode = mode_of(arguments.mode);
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
         const XBeeBytes data = encode(message_of(text, origin, static_cast<XBeeMessage*>(nullptr)));
@@ -195,7 +195,7 @@ void encode_all(const Arguments& arguments) {
     });
 }
 
-void print(const XBeeReading& reading, const Arguments& arguments, bool fields) {
+void print(const XBeeReading& reading, const XbeeArguments& arguments, bool fields) {
     if (arguments.json) {
         ordered_json line = {{"ok", reading.ok()}};
         if (reading.ok() && fields) line.update(json_of(decode_xbee(reading.data)));
@@ -213,7 +213,7 @@ void print(const XBeeReading& reading, const Arguments& arguments, bool fields) 
 }
 
 /// Each input is a stretch of the line: any number of frames. The status is 1 if anything in it was bad.
-void read(const Arguments& arguments, int& status, bool fields) {
+void read_xbee(const XbeeArguments& arguments, int& status, bool fields) {
     const XBeeApiMode mode = mode_of(arguments.mode);
     status = 0;
     for_each_input(arguments.inputs, [&](const std::string& text, const std::string& origin) {
@@ -232,9 +232,9 @@ void read(const Arguments& arguments, int& status, bool fields) {
 }
 
 template <typename Act>
-void declare(Command& xbee, const char* name, const char* help, const char* input, const char* input_help,
-             Act act) {
-    auto arguments = std::make_shared<Arguments>();
+void declare_xbee(Command& xbee, const char* name, const char* help, const char* input,
+                  const char* input_help, Act act) {
+    auto arguments = std::make_shared<XbeeArguments>();
     Command* command = xbee.add_subcommand(name, help);
     command->add_option("--mode", arguments->mode, "API mode: 1 plain, 2 escaped (default 2)");
     command->add_option(input, arguments->inputs, input_help);
@@ -246,16 +246,18 @@ void declare(Command& xbee, const char* name, const char* help, const char* inpu
 void declare_xbee_frames(Command& frames, int& status) {
     Command* xbee = frames.add_subcommand("xbee", "API frames of XBee modules, as bytes of the serial line");
     xbee->require_subcommand(1);
-    declare(*xbee, "encode", "Print the bytes of a message", "MESSAGE",
-            "as decode prints it, in one argument: \"at id 1 command NT value 3C\"; fields that are left out "
-            "have their usual value; without it, one a line on standard input",
-            encode_all);
+    declare_xbee(
+        *xbee, "encode", "Print the bytes of a message", "MESSAGE",
+        "as decode prints it, in one argument: \"at id 1 command NT value 3C\"; fields that are left out "
+        "have their usual value; without it, one a line on standard input",
+        encode_all);
     constexpr char kBytes[] =
         "hexadecimal, a stretch of the line in one argument; without it, one a line on standard input";
-    declare(*xbee, "decode", "Print the messages, or what is wrong; status 1 if a frame is bad", "BYTES",
-            kBytes, [&status](const Arguments& arguments) { read(arguments, status, true); });
-    declare(*xbee, "check", "Print ok or what is wrong, bytes counted from 0; status 1 if a frame is bad",
-            "BYTES", kBytes, [&status](const Arguments& arguments) { read(arguments, status, false); });
+    declare_xbee(*xbee, "decode", "Print the messages, or what is wrong; status 1 if a frame is bad", "BYTES",
+                 kBytes, [&status](const XbeeArguments& arguments) { read_xbee(arguments, status, true); });
+    declare_xbee(*xbee, "check",
+                 "Print ok or what is wrong, bytes counted from 0; status 1 if a frame is bad", "BYTES",
+                 kBytes, [&status](const XbeeArguments& arguments) { read_xbee(arguments, status, false); });
 }
 
 }  // namespace puckloop::tools

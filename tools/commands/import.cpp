@@ -18,13 +18,13 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Options {
+struct ImportOptions {
     std::string file;
     std::string out = "-";
     scenarios::Settings settings;
 };
 
-void import(const Options& options) {
+void import(const ImportOptions& options) {
     if (!argos::is_experiment(options.file))
         throw InputError(options.file, "", "is no ARGoS experiment by its name",
                          "a file whose name ends in .argos or .xml");
@@ -44,7 +44,7 @@ void import(const Options& options) {
 }  // namespace
 
 void declare_import(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ImportOptions>();
     Command* command = app.add_subcommand("import", "an ARGoS experiment file (.argos) as a scenario");
     command->add_option("file", options->file, "experiment file (docs/swarm.md)")
         ->required()

@@ -27,13 +27,13 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr double kLongest = 9e6;  // s
+constexpr double kLatestReplayed = 9e6;  // s
 
-struct Options {
+struct ReplayCommandOptions {
     RunRequest request;
     std::string folder, node, linux_program;
     std::vector<std::string> linux_args;
-    double from = 0.0, until = kLongest;
+    double from = 0.0, until = kLatestReplayed;
     std::string vcd;
     std::vector<std::string> registers;
     bool list_registers = false;
@@ -49,7 +49,7 @@ const PlannedNode& find_node(const RunSetup& setup, const std::string& name) {
                      fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
-void check(const Options& options) {
+void check_options(const ReplayCommandOptions& options) {
     if (options.vcd.empty() && !options.registers.empty())
         throw InputError("", "--registers", "there is no --vcd to write them to", "--vcd FILE");
     if (options.vcd.empty() && options.from > 0)
@@ -63,7 +63,8 @@ void check(const Options& options) {
 }
 
 /// The node's links of which something was recorded, within the time that the dump is of.
-TraceSelection lines_of(const Options& options, const RunSetup& setup, const ReplayResult& result) {
+TraceSelection lines_of(const ReplayCommandOptions& options, const RunSetup& setup,
+                        const ReplayResult& result) {
     TraceSelection selection;
     for (const cosim::LinkSpec& link : setup.links)
         if ((link.a.node == options.node || link.b.node == options.node) && result.links.contains(link.name))
@@ -105,7 +106,7 @@ std::optional<cosim::Time> reported(const nlohmann::json& report, const char* ke
     const auto found = report.find(key);
     if (found == report.end() || !found->is_number()) return std::nullopt;
     const double seconds = *found;
-    if (!(seconds > 0 && seconds < kLongest)) return std::nullopt;
+    if (!(seconds > 0 && seconds < kLatestReplayed)) return std::nullopt;
     return cosim::from_seconds(seconds);
 }
 
@@ -117,8 +118,8 @@ void check_output(const std::string& vcd, const std::filesystem::path& record) {
     if (!vcd.empty()) check_output_file(vcd);
 }
 
-int run(Options& options) {
-    check(options);
+int run_replay(ReplayCommandOptions& options) {
+    check_options(options);
     RunRequest& request = options.request;
     if (!options.linux_program.empty()) {
         request.linux_command = {options.linux_program};
@@ -187,7 +188,7 @@ int run(Options& options) {
 }
 
 /// What the run was given has to be given again.
-void declare_run_options(Command& command, Options& options) {
+void declare_run_options(Command& command, ReplayCommandOptions& options) {
     RunRequest& request = options.request;
     command.add_option("--firmware", request.firmware, "as of `run`: BOARD=IMAGE")->type_name("BOARD=IMAGE");
     command.add_option("--linux", options.linux_program, "as of `run`")->type_name("PROGRAM [ARG]...");
@@ -213,7 +214,7 @@ void declare_run_options(Command& command, Options& options) {
 }  // namespace
 
 void declare_replay(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReplayCommandOptions>();
     Command* command =
         app.add_subcommand("replay", "execute one node of a recorded run alone, and compare what it sends");
     command->add_option("scenario", options->request.scenario, "the scenario that was run")
@@ -227,7 +228,7 @@ void declare_replay(Command& app, int& status) {
         ->type_name("NAME");
     declare_run_options(*command, *options);
     command->add_option("--to", options->until, "simulated seconds; else all that was recorded")
-        ->check(seconds_between(1e-9, kLongest))
+        ->check(seconds_between(1e-9, kLatestReplayed))
         ->type_name("TIME");
     command
         ->add_option("--vcd", options->vcd,
@@ -241,13 +242,13 @@ void declare_replay(Command& app, int& status) {
         ->allow_extra_args(false)
         ->type_name("NAME,...");
     command->add_option("--from", options->from, "where the dump begins, simulated seconds")
-        ->check(seconds_between(0.0, kLongest))
+        ->check(seconds_between(0.0, kLatestReplayed))
         ->type_name("TIME");
     command->add_flag("--list-registers", options->list_registers,
                       "print what --registers takes for this node and its firmware");
     command->add_option("--out", options->request.out, "folder for the node's log (default: DIR/replay)")
         ->type_name("DIR");
-    command->callback([options, &status] { status = run(*options); });
+    command->callback([options, &status] { status = run_replay(*options); });
 }
 
 }  // namespace puckloop::tools

@@ -33,9 +33,9 @@ namespace puckloop::tools {
 namespace {
 
 constexpr double kShortestStall = 1e-3;
-constexpr double kShortestRun = 1e-9, kLongestRun = 720 * 3600.0;  // seconds
+constexpr double kShortestRun = 1e-9, kLongestDuration = 720 * 3600.0;  // seconds
 
-struct Options {
+struct RunOptions {
     RunRequest request;
     std::string linux_program;
     std::vector<std::string> linux_args;
@@ -62,7 +62,7 @@ double time_of(const std::string& option, const std::string& text) {
     try {
         const double seconds =
             scenarios::parse_quantity(bare ? text + " s" : text, scenarios::Dimension::Time);
-        if (seconds > 0 && seconds <= kLongestRun) return seconds;
+        if (seconds > 0 && seconds <= kLongestDuration) return seconds;
     } catch (const scenarios::QuantityError&) {
     }
     throw InputError("", option, fmt::format("'{}' is no time within a run", text), "such as 40s");
@@ -99,7 +99,7 @@ int list_parameters(const RunRequest& request) {
     return 0;
 }
 
-int run(Options& options) {
+int run_scenario_file(RunOptions& options) {
     RunRequest& request = options.request;
     request.scenario = scenario_named(request.scenario);
     if (options.list_parameters) return list_parameters(request);
@@ -163,7 +163,7 @@ int run(Options& options) {
 void declare_run(Command& app, int& status) {
     Command* command =
         app.add_subcommand("run", "run a scenario: boards, Linux programs and the world together");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RunOptions>();
     RunRequest& request = options->request;
     command->add_option("scenario", request.scenario, "scenario file (docs/scenario.md)")
         ->type_name("SCENARIO");
@@ -182,7 +182,7 @@ void declare_run(Command& app, int& status) {
         ->add_option(
             "--linux-start", request.linux_start,
             "simulated second at which every robot's Linux program is started (default: the scenario's)")
-        ->check(number_between(0.0, kLongestRun))
+        ->check(number_between(0.0, kLongestDuration))
         ->type_name("S");
     command
         ->add_option("--mission", request.mission,
@@ -228,7 +228,7 @@ void declare_run(Command& app, int& status) {
         ->type_name("\"KIND KEY=VALUE...\"")
         ->allow_extra_args(false);
     command->add_option("--duration", request.duration, "simulated time of the run, such as 30 s")
-        ->check(seconds_between(kShortestRun, kLongestRun))
+        ->check(seconds_between(kShortestRun, kLongestDuration))
         ->type_name("TIME");
     command
         ->add_option("--set", request.variables,
@@ -266,7 +266,7 @@ void declare_run(Command& app, int& status) {
     command
         ->add_option("--stall", request.stall_seconds,
                      "wall-clock seconds after which a silent node ends the run")
-        ->check(seconds_between(kShortestStall, kLongestRun))
+        ->check(seconds_between(kShortestStall, kLongestDuration))
         ->type_name("TIME");
     command
         ->add_option("--gdb", request.gdb,
@@ -335,7 +335,7 @@ void declare_run(Command& app, int& status) {
         "  puckloop run hello --in-process\n"
         "  puckloop run scenarios/own_binaries.toml --firmware pic=my.hex --linux ./controller -x 1\n"
         "  puckloop run hello --duration 5s --record --fault \"drop link=robot0.uart at=2s\"");
-    command->callback([options, &status] { status = run(*options); });
+    command->callback([options, &status] { status = run_scenario_file(*options); });
 }
 
 }  // namespace puckloop::tools

@@ -18,7 +18,7 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Options {
+struct TraceOptions {
     std::string file;
     TraceSelection selection;
     std::string csv, vcd;
@@ -38,7 +38,7 @@ std::string unmarked_faults(const RecordedTrace& trace) {
     return text.empty() ? "" : fmt::format("faults that are in no row (faults.csv): {}\n", text);
 }
 
-void run(const Options& options) {
+void run_trace(const TraceOptions& options) {
     if (options.file.empty())
         throw InputError("", "trace", "no file given",
                          "trace.csv of a run or its results folder, or one of export, decode and rab");
@@ -56,7 +56,7 @@ void run(const Options& options) {
 }  // namespace
 
 void declare_trace(Command& app, int&) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TraceOptions>();
     Command* command = app.add_subcommand(
         "trace", "read a recorded trace: count, filter, decode, export; by itself it counts");
     command->add_option("file", options->file, "trace.csv of a run, or its results folder");
@@ -69,7 +69,7 @@ void declare_trace(Command& app, int&) {
     declare_trace_export(*command);
     declare_trace_rab(*command);
     command->callback([command, options] {
-        if (!command->subcommand_given()) run(*options);
+        if (!command->subcommand_given()) run_trace(*options);
     });
 }
 

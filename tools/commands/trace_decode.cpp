@@ -16,7 +16,7 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Options {
+struct DecodeOptions {
     std::string trace;
     std::vector<std::string> protocols;
     TraceSelection selection;
@@ -26,7 +26,7 @@ struct Options {
 }  // namespace
 
 void declare_trace_decode(Command& trace) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<DecodeOptions>();
     Command* command =
         trace.add_subcommand("decode", "print the frames of a trace by protocol, errors marked");
     command->add_option("trace", options->trace, "results folder of a run, or its trace.csv")

@@ -16,16 +16,16 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr double kMostRate = 1e9;  // Hz
-constexpr double kLongest = 9e6;   // s
+constexpr double kMostRate = 1e9;        // Hz
+constexpr double kLatestExported = 9e6;  // s
 
-struct Options {
+struct ExportOptions {
     std::string trace, format, output, timescale;
     TraceSelection selection;
     double rate = 0.0;
 };
 
-std::string format_of(const Options& options) {
+std::string format_of(const ExportOptions& options) {
     if (!options.format.empty()) return options.format;
     const std::string suffix = std::filesystem::path(options.output).extension().string();
     for (const char* known : {"csv", "pcapng", "sr", "vcd"})
@@ -35,7 +35,7 @@ std::string format_of(const Options& options) {
                      "csv, pcapng, sr or vcd");
 }
 
-void run(const Options& options) {
+void run_export(const ExportOptions& options) {
     const std::string format = format_of(options);
     if (options.rate != 0.0 && format != "sr")
         throw InputError("", "--rate", fmt::format("a {} file has no sample rate", format), "--format sr");
@@ -65,13 +65,14 @@ void add_selection(Command& command, TraceSelection& selection) {
     command.add_option("--kind", selection.kinds, "only these kinds (repeatable)")
         ->allow_extra_args(false)
         ->check(one_of({"uart", "i2c", "signal", "radio", "can"}));
-    command.add_option("--from", selection.from_s, "first time, s")->check(seconds_between(0.0, kLongest));
+    command.add_option("--from", selection.from_s, "first time, s")
+        ->check(seconds_between(0.0, kLatestExported));
     command.add_option("--to", selection.until_s, "end time, s; not included")
-        ->check(seconds_between(0.0, kLongest));
+        ->check(seconds_between(0.0, kLatestExported));
 }
 
 void declare_trace_export(Command& trace) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ExportOptions>();
     Command* command = trace.add_subcommand(
         "export", "write a trace for sigrok (sr), Wireshark (pcapng), GTKWave (vcd) or as csv");
     command->add_option("trace", options->trace, "results folder of a run, or its trace.csv")
@@ -90,7 +91,7 @@ void declare_trace_export(Command& trace) {
         ->check(one_of({"1 us", "100 ns", "10 ns", "1 ns", "100 ps", "10 ps", "1 ps"}))
         ->type_name("UNIT");
     add_selection(*command, options->selection);
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_export(*options); });
 }
 
 }  // namespace puckloop::tools

@@ -17,11 +17,11 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr double kLongest = 9e6;  // s
+constexpr double kLatestOfRab = 9e6;  // s
 
-struct Options {
+struct TraceRabOptions {
     std::string folder;
-    double from_s = 0.0, until_s = kLongest;
+    double from_s = 0.0, until_s = kLatestOfRab;
     double bin_cm = 10.0;
     bool json = false;
 };
@@ -29,13 +29,14 @@ struct Options {
 }  // namespace
 
 void declare_trace_rab(Command& trace) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TraceRabOptions>();
     Command* command =
         trace.add_subcommand("rab", "range-and-bearing frames of a run: delivered, lost, and why");
     command->add_option("folder", options->folder, "results folder of a run")->required()->type_name("DIR");
-    command->add_option("--from", options->from_s, "first time, s")->check(seconds_between(0.0, kLongest));
+    command->add_option("--from", options->from_s, "first time, s")
+        ->check(seconds_between(0.0, kLatestOfRab));
     command->add_option("--to", options->until_s, "end time, s; not included")
-        ->check(seconds_between(0.0, kLongest));
+        ->check(seconds_between(0.0, kLatestOfRab));
     command->add_option("--bin", options->bin_cm, "width of a class of distances, cm")
         ->check(positive_number());
     command->add_flag("--json", options->json, "print JSON");

@@ -22,7 +22,7 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Options {
+struct UploadOptions {
     std::string image, port, script;
     double at = 1.0, wait = 30.0, baud = 115200;
 };
@@ -52,7 +52,7 @@ void write_script(const std::vector<BootPacket>& packets, const std::string& fil
     fmt::print("{} rows, {:.2f} s to {:.2f} s: {}\n", packets.size(), at, time, file);
 }
 
-void run(const Options& options, int& status) {
+void run_upload(const UploadOptions& options, int& status) {
     if (options.port.empty() == options.script.empty())
         throw InputError("", "upload", "one way to send it is needed", "a PORT or --script FILE");
     const auto packets = boot_packets(image::load_image(options.image));
@@ -74,7 +74,7 @@ void run(const Options& options, int& status) {
 void declare_upload(Command& app, int& status) {
     Command* command = app.add_subcommand(
         "upload", "a program into an e-puck's flash by its boot loader, on a cable or by Bluetooth");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<UploadOptions>();
     command->add_option("image", options->image, "program for the main board: HEX, ELF or COFF")
         ->required()
         ->type_name("IMAGE");
@@ -97,7 +97,7 @@ void declare_upload(Command& app, int& status) {
     command->add_option("--at", options->at, "s: when the script asks for the boot loader")
         ->check(number_between(0, 1e6))
         ->type_name("S");
-    command->callback([options, &status] { run(*options, status); });
+    command->callback([options, &status] { run_upload(*options, status); });
 }
 
 }  // namespace puckloop::tools

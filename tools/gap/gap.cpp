@@ -39,7 +39,7 @@ namespace {
 
 constexpr double kBriefRerun = 40.0;  // s of simulated time
 
-struct Request {
+struct FitRequest {
     std::filesystem::path folder, out, firmware;
     std::uint64_t seed = 1;
     bool rerun = false, no_rerun = false;
@@ -100,7 +100,7 @@ void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict
 }
 
 /// With the overlay as written, which is what anybody's run would load. Unasked: some seconds of it.
-void run_again(const Request& request, const gap::Experiment& experiment, gap::Verdict& verdict) {
+void run_again(const FitRequest& request, const gap::Experiment& experiment, gap::Verdict& verdict) {
     gap::emulate::RerunOptions options;
     options.tools = emulation_tools();
     options.overlay = std::filesystem::absolute(beside(request.out / "overlay.toml"));
@@ -123,7 +123,7 @@ void run_again(const Request& request, const gap::Experiment& experiment, gap::V
     if (const auto caution = verdict.rerun.caution(); !caution.empty()) fmt::print("  {}\n", caution);
 }
 
-void analyse_folder(const Request& request) {
+void analyse_folder(const FitRequest& request) {
     if (request.rerun && request.out.empty())
         throw InputError("", "--rerun", "needs the overlay that --out writes", "--out OUT");
     if (request.rerun && request.no_rerun)
@@ -174,7 +174,7 @@ void analyse_folder(const Request& request) {
 void declare_gap(Command& app, int& status) {
     auto* command =
         app.add_subcommand("gap", "simulation against measured data: what is wrong, why, and what is gained");
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<FitRequest>();
     command
         ->add_option("folder", request->folder,
                      "measured experiment: a folder with experiment.toml (docs/gap.md)")

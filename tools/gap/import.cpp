@@ -14,7 +14,7 @@ namespace puckloop::tools {
 
 namespace {
 
-struct Request {
+struct ImportRequest {
     std::filesystem::path folder, out;
     std::string set;
     bool list = false;
@@ -29,7 +29,7 @@ void tell_sets() {
 
 void declare_gap_import(Command& gap, int& status) {
     Command* command = gap.add_subcommand("import", "Turn a published data set into experiment folders");
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<ImportRequest>();
     command->add_option("set_folder", request->folder, "folder of the data set")->type_name("SET_FOLDER");
     command->add_option("--out", request->out, "where the experiment folders go")
         ->check(not_empty())

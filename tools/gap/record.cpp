@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Request {
+struct RecordRequest {
     std::string kind;
     fs::path out, firmware, rab;
     std::vector<std::string> changes;
@@ -33,7 +33,7 @@ struct Request {
 };
 
 /// A run that fails under faults of the line fails for them, most often.
-gap::WrittenExperiment recorded(const std::string& kind, const Request& request,
+gap::WrittenExperiment recorded(const std::string& kind, const RecordRequest& request,
                                 const gap::emulate::RecordOptions& options) {
     try {
         return gap::emulate::record(kind, options);
@@ -47,7 +47,7 @@ gap::WrittenExperiment recorded(const std::string& kind, const Request& request,
     }
 }
 
-void record_kind(const std::string& kind, const fs::path& out, const Request& request,
+void record_kind(const std::string& kind, const fs::path& out, const RecordRequest& request,
                  const gap::emulate::RecordOptions& options) {
     const auto experiment = recorded(kind, request, options);
     gap::write_folder(experiment, out);
@@ -58,7 +58,7 @@ void record_kind(const std::string& kind, const fs::path& out, const Request& re
 }
 
 /// A change that the recording does not hold would make the verdict "no effect" look like a failure.
-void warn_of_unseen(const Request& request, const std::string& change) {
+void warn_of_unseen(const RecordRequest& request, const std::string& change) {
     const std::string name = change.substr(0, change.find('='));
     const auto kinds = gap::emulate::kinds_showing(name);
     if (kinds.empty() || std::find(kinds.begin(), kinds.end(), request.kind) != kinds.end()) return;
@@ -66,7 +66,7 @@ void warn_of_unseen(const Request& request, const std::string& change) {
                request.kind, name, fmt::join(kinds, ", "));
 }
 
-void record(const Request& request) {
+void record(const RecordRequest& request) {
     gap::emulate::RecordOptions options;
     options.tools = emulation_tools();
     options.seed = request.seed;
@@ -109,7 +109,7 @@ gap::emulate::Tools emulation_tools() {
 void declare_gap_record(Command& gap, int& status) {
     Command* command = gap.add_subcommand(
         "record", "Perform an experiment on the emulator, firmware in the loop, and write its folder");
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<RecordRequest>();
     command
         ->add_option("kind", request->kind,
                      "motion, proximity, ground, microphone, accelerometer, timing, serial, rab or all")

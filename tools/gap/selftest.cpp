@@ -25,7 +25,7 @@ constexpr std::size_t kDrawn = 56, kAllDrawn = 1120;  // two and forty of each k
 constexpr std::uint64_t kMostCases = 100'000;
 constexpr double kMostWorkers = 256;
 
-struct Request {
+struct SelftestRequest {
     std::uint64_t cases = 0, seed = 1;
     std::vector<std::size_t> only;
     unsigned workers = 2;
@@ -41,7 +41,7 @@ struct Chosen {
     std::vector<std::size_t> number;  ///< of each, in the whole list
 };
 
-Chosen chosen_plans(const Request& request) {
+Chosen chosen_plans(const SelftestRequest& request) {
     const auto plans = st::planned_cases(request.seed, request.quick ? kQuick : request.cases);
     Chosen chosen;
     bool kind_known = request.kind.empty();
@@ -62,7 +62,7 @@ Chosen chosen_plans(const Request& request) {
     return chosen;
 }
 
-std::filesystem::path scratch_of(const Request& request) {
+std::filesystem::path scratch_of(const SelftestRequest& request) {
     if (!request.scratch.empty()) {
         prepare_folder(request.scratch);
         return request.scratch;
@@ -71,7 +71,7 @@ std::filesystem::path scratch_of(const Request& request) {
 }
 
 /// Robots changed in secret; found all means 0.
-int secret_test(const Request& request) {
+int secret_test(const SelftestRequest& request) {
     namespace em = gap::emulate;
     em::RecordOptions options;
     options.tools = emulation_tools();
@@ -97,7 +97,7 @@ int secret_test(const Request& request) {
     return std::all_of(results.begin(), results.end(), [](const auto& r) { return r.found; }) ? 0 : 1;
 }
 
-int self_test(const Request& request) {
+int self_test(const SelftestRequest& request) {
     const std::pair<const char*, bool> drawn[] = {
         {"--svg", !request.svg.empty()},    {"--full", request.full},
         {"--class", !request.of.empty()},   {"--pool", !request.pool.empty()},
@@ -155,7 +155,7 @@ int self_test(const Request& request) {
 void declare_gap_selftest(Command& gap, int& status) {
     Command* command = gap.add_subcommand("selftest", "Hide effects in made experiments and see what the "
                                                       "analysis says; status 1 when it misses its targets");
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<SelftestRequest>();
     command->add_option("--cases", request->cases, "how many (default: all, over 300; of --grammar 56)")
         ->check(count_up_to(kMostCases))
         ->type_name("N");

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct CheckOptions {
     fs::path file;
     bool json = false;
 };
@@ -106,7 +106,7 @@ void print(const ordered_json& result) {
         fmt::print("  warning: {}\n", warning.get<std::string>());
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
     const fs::path file = scenario_named(options.file);
     RunRequest request;
     request.scenario = file;
@@ -122,7 +122,7 @@ int check(const Options& options) {
 }  // namespace
 
 void declare_check(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CheckOptions>();
     Command* command = app.add_subcommand(
         "check", "everything but running: keys, images, programs, devices, and what a run costs");
     command->add_option("file", options->file, "scenario or campaign, or a shipped scenario's name")

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kLibrary = "gctronic/e-puck-library", kArgos = "demiurge-project/argos3-epuck";
 constexpr std::string_view kSercom = "puckloop exec IMAGE --uart1 pty --realtime";
 constexpr std::string_view kDemo = "puckloop exec IMAGE --selector 2 --uart1 - --seconds 20";
-constexpr std::string_view kRab = "puckloop run own_rab.toml --firmware rab=IMAGE";
+constexpr std::string_view kRabCommand = "puckloop run own_rab.toml --firmware rab=IMAGE";
 constexpr std::string_view kLoader = "puckloop exec IMAGE --nvm robot0.nvm --uart1 pty --realtime";
 
 constexpr std::array kImages{
@@ -77,13 +77,13 @@ constexpr std::array kImages{
                     "puckloop run own_binaries.toml --firmware pic=IMAGE --linux ./controller"},
     CataloguedImage{"randb.hex", kArgos, "erab_firmware/e-RandB_firmware_parametric/randb.hex",
                     "2e2e72251e9af4d9139ef7d2e4db0df7ef7f5ccbadbfd7f400d817b40aaa88b9", "rab", "",
-                    "range and bearing, frames of a size that is set", kRab},
+                    "range and bearing, frames of a size that is set", kRabCommand},
     CataloguedImage{"randb.cof", kArgos, "erab_firmware/e-RandB_firmware_parametric/randb.cof",
                     "bda7ea16f3a8ec6c59cfe7b3c4a9e2317bdff53db2206cf780b2dc24d170e159", "rab", "",
-                    "the same with symbols and source lines", kRab},
+                    "the same with symbols and source lines", kRabCommand},
     CataloguedImage{"erab_1to4b.hex", kArgos, "erab_firmware/erab_1to4b.hex",
                     "e266763fdf360c0a98a2d0dcd1b34d73edb2ad1ed9c9dc3e6cda475eac330836", "rab", "",
-                    "range and bearing, frames of one to four bytes", kRab},
+                    "range and bearing, frames of one to four bytes", kRabCommand},
 };
 
 }  // namespace

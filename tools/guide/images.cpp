@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct ImagesOptions {
     std::string name;
     bool json = false;
 };
@@ -85,7 +85,7 @@ void print(const CataloguedImage& image) {
     fmt::print("  here        {}\n  command     {}\n", text_of(look_for(image)), command_of(image));
 }
 
-int show(const Options& options) {
+int show(const ImagesOptions& options) {
     std::vector<const CataloguedImage*> shown;
     std::vector<std::string_view> names;
     for (const CataloguedImage& image : catalogued_images()) {
@@ -115,7 +115,7 @@ int show(const Options& options) {
 }  // namespace
 
 void declare_images(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ImagesOptions>();
     Command* command = app.add_subcommand(
         "images", "third-party firmware images: where they come from, and what works with them");
     command->add_option("name", options->name, "only this one")->type_name("NAME");

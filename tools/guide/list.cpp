@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct ListOptions {
     std::string what;
     bool json = false;
 };
@@ -96,7 +96,7 @@ void print(const char* title, const std::vector<Row>& rows) {
         fmt::print("  {:<{}}  {}\n", row.name, width, row.about);
 }
 
-int list(const Options& options) {
+int list(const ListOptions& options) {
     ordered_json all{{"format", 1}};
     const bool every = options.what.empty();
     const auto one = [&](const char* what, const char* title, const auto& rows_of) {
@@ -121,7 +121,7 @@ int list(const Options& options) {
 }  // namespace
 
 void declare_list(Command& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ListOptions>();
     Command* command =
         app.add_subcommand("list", "scenarios, campaigns and images, each with its first line");
     command->add_option("what", options->what, "only these")
