@@ -14,7 +14,7 @@ namespace puckloop::tools {
 namespace {
 
 constexpr const char* kRun = "the run goes on to its end";
-constexpr std::size_t kLongest = 2000;
+constexpr std::size_t kLongestText = 2000;
 
 std::string failure_of(const TestSuite& suite, const ExpectationResult& result) {
     return fmt::format("{}: {}: expected that {}: {}", suite.scenario, result.place, result.name, result.why);
@@ -22,7 +22,7 @@ std::string failure_of(const TestSuite& suite, const ExpectationResult& result) 
 
 /// What XML and a line of TAP can hold.
 std::string shown(const std::string& text) {
-    return plain_text(text, kLongest);
+    return plain_text(text, kLongestText);
 }
 
 void add_case(pugi::xml_node to, const TestSuite& suite, const std::string& name, double seconds,
