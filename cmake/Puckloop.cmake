@@ -57,7 +57,7 @@ function(puckloop_library name)
 endfunction()
 
 # Tests spend their time in the libraries; compiled with less effort they are built a fifth faster.
-set(PUCKLOOP_TEST_OPTIONS $<$<CONFIG:RelWithDebInfo>:-O1>)
+set(PUCKLOOP_TEST_OPTIONS $<$<CONFIG:RelWithDebInfo>:-Og> $<$<CONFIG:RelWithDebInfo>:-g0>)
 
 # Copying debug information into some 170 executables was most of their linking: theirs have the names of functions alone,
 # and gold, which comes with Debian's binutils, puts them together. `debug` has all of it.
