@@ -1,5 +1,6 @@
 #include "benchmark/avr_speed.h"
 
+#include "benchmark/processor_seconds.h"
 #include "benchmark/prompt_module.h"
 #include "benchmark/timed_run.h"
 #include "emu/avr/chip.h"
@@ -16,13 +17,6 @@ namespace puckloop::tools {
 namespace {
 
 using cosim::Time;
-
-double avr_processor_seconds() {
-    timespec time{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    constexpr double kNanoseconds = 1e-9;
-    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * kNanoseconds;
-}
 
 image::AvrImage load(const std::filesystem::path& image) {
     return image::load_avr_image(image.string(), avr::atmega1284p().image_part());
@@ -94,9 +88,9 @@ double avr_program_speed(const std::filesystem::path& image, double slice_s) {
     constexpr Time kStep = 20 * cosim::kMillisecond;
     chip.run_until(kStep);
     const avr::Cycle first = chip.cycle();
-    const double start = avr_processor_seconds();
+    const double start = processor_seconds();
     double elapsed = 0;
-    while ((elapsed = avr_processor_seconds() - start) < slice_s)
+    while ((elapsed = processor_seconds() - start) < slice_s)
         chip.run_until(chip.now() + kStep);
     constexpr double kMillions = 1e-6;
     return static_cast<double>(chip.cycle() - first) / elapsed * kMillions;
@@ -106,9 +100,9 @@ double tam_idle_speed(const std::filesystem::path& image, double slice_s) {
     Booth booth(image);
     booth.run_until(cosim::from_seconds(kTamStartUp));
     const Time begin = booth.now();
-    const double start = avr_processor_seconds();
+    const double start = processor_seconds();
     double elapsed = 0;
-    while ((elapsed = avr_processor_seconds() - start) < slice_s)
+    while ((elapsed = processor_seconds() - start) < slice_s)
         booth.run_until(booth.now() + 50 * cosim::kMillisecond);
     return cosim::to_seconds(booth.now() - begin) / elapsed;
 }

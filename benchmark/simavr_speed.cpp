@@ -2,6 +2,7 @@
 // --case avr`. Prints millions of clocks by processor second, or, for the TAM's firmware with a radio module
 // that answers at once, simulated by processor seconds. A program of its own because libsimavr is GPL 3.
 
+#include "benchmark/processor_seconds.h"
 #include "benchmark/prompt_module.h"
 
 #include <cstdio>
@@ -20,12 +21,6 @@ extern "C" {
 namespace {
 
 constexpr double kClock = 16e6, kStartUp = 4.0;
-
-double processor_seconds() {
-    timespec time{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
-}
 
 /// The module on USART 1. simavr takes bytes as fast as they are raised, its own buffer has 64.
 struct Module {
@@ -89,9 +84,9 @@ int main(int count, char** words) {
     };
     run(tam ? static_cast<avr_cycle_count_t>(kStartUp * kClock) : step);
     const avr_cycle_count_t first = chip->cycle;
-    const double start = processor_seconds();
+    const double start = puckloop::tools::processor_seconds();
     double elapsed = 0;
-    while ((elapsed = processor_seconds() - start) < slice)
+    while ((elapsed = puckloop::tools::processor_seconds() - start) < slice)
         run(chip->cycle + step);
     const double clocks = static_cast<double>(chip->cycle - first) / elapsed;
     std::printf("%.6f\n", tam ? clocks / kClock : clocks * 1e-6);

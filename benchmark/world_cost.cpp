@@ -1,6 +1,7 @@
 #include "benchmark/world_cost.h"
 
 #include "base/random.h"
+#include "benchmark/processor_seconds.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/signals.h"
 #include "physics/description/channels.h"
@@ -24,12 +25,6 @@ namespace {
 
 constexpr double kCell = 0.3;  // m: room for each robot
 constexpr cosim::Time kStep = cosim::kMillisecond;
-
-double processor_seconds() {
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 class Stopwatch final : public physics::StepObserver {
   public:

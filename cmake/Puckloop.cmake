@@ -35,7 +35,7 @@ target_link_libraries(puckloop_precompiled PRIVATE puckloop_options)
 target_precompile_headers(puckloop_precompiled PRIVATE ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
 
 # Reading headers was nearly half of a build: some sources of a target are compiled together as one. A file still includes
-# what it uses, and stands alone: the presets without this option prove it. File-level names of one target must differ.
+# what it uses, and compiles alone: the presets without this option prove it. File-level names of one target must differ.
 option(PUCKLOOP_UNITY "Compile the sources of a target some at a time" OFF)
 if(PUCKLOOP_UNITY)
   # GCC takes every file but the first for a header, whose types others might see; `plain` has the warning.

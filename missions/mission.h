@@ -21,10 +21,14 @@ struct Region {
     double radius = 0.0;               ///< of a disc, m
     double length = 0.0, width = 0.0;  ///< of a rectangle, along x and y, m
 
-    bool holds(const Place& place) const {
-        if (disc) return std::hypot(place.x - x, place.y - y) <= radius;
-        return std::abs(place.x - x) <= length / 2 && std::abs(place.y - y) <= width / 2;
+    /// From its edge, m; 0 in it.
+    double distance(const Place& place) const {
+        const auto beyond = [](double way, double half) { return way <= half ? 0.0 : way - half; };
+        if (disc) return beyond(std::hypot(place.x - x, place.y - y), radius);
+        return std::hypot(beyond(std::abs(place.x - x), length / 2),
+                          beyond(std::abs(place.y - y), width / 2));
     }
+    bool holds(const Place& place) const { return distance(place) == 0.0; }
 };
 
 enum class Kind {

@@ -1,5 +1,6 @@
 #include "cosim/can/can_bus.h"
 
+#include "base/times_text.h"
 #include "cosim/can/can_message.h"
 
 #include <fmt/format.h>
@@ -7,14 +8,6 @@
 #include <algorithm>
 
 namespace puckloop::cosim {
-
-namespace {
-
-std::string times_so_far(std::uint64_t count) {
-    return count == 1 ? std::string() : fmt::format(" ({} times so far)", count);
-}
-
-}  // namespace
 
 CanBusNode::CanBusNode(CanBusOptions options)
     : options_(std::move(options)),
@@ -123,7 +116,7 @@ void CanBusNode::take_news(std::size_t index, const CanNews& news, Time time) {
         put_frame(message, news.frame);
         ++counters.sent;
         if (is_milestone(++frames_) && log_.is_open())
-            write(time, fmt::format("{}: sent {}{}", name, can_text(news.frame), times_so_far(frames_)));
+            write(time, fmt::format("{}: sent {}{}", name, can_text(news.frame), so_far_text(frames_)));
         break;
     case CanNews::What::Received:
         message.kind = CanKind::Received;
@@ -151,7 +144,7 @@ void CanBusNode::take_news(std::size_t index, const CanNews& news, Time time) {
         if (is_milestone(++error_frames_) && log_.is_open())
             write(time, fmt::format("{}: {} error at bit {} of {}{}", name, can_error_name(news.error),
                                     news.position, news.sender ? can_text(news.frame) : "another's frame",
-                                    times_so_far(error_frames_)));
+                                    so_far_text(error_frames_)));
         break;
     case CanNews::What::Recovered:
         message.kind = CanKind::Recovered;

@@ -7,12 +7,11 @@ namespace puckloop::cosim {
 namespace {
 // Start bit and 8 data bits: the stop bit of an 8N1 frame begins then.
 constexpr double kFlightBits = 9.0;
-constexpr double kPicosecondsPerSecond = 1e12;
 }  // namespace
 
 Time flight_time(const LinkSpec& link) {
     if (link.nominal_baud <= 0.0) return 0;
-    return static_cast<Time>(kFlightBits * kPicosecondsPerSecond / link.nominal_baud);
+    return static_cast<Time>(kFlightBits * static_cast<double>(kSecond) / link.nominal_baud);
 }
 
 Time delivery_time(const Message& message, Time flight, Time latency) {

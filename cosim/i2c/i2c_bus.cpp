@@ -238,10 +238,10 @@ void I2cBusNode::bus_freed() {
     waiting_.clear();
 }
 
-void I2cBusNode::lose(PortIndex port, const I2cPhase& phase) {
+void I2cBusNode::lose(PortIndex port, const I2cPhase& phase, const I2cAnswer& reply, Time earliest) {
     ++counters_.lost;
     log_.lost(now_, port, phase);
-    answer(port, phase, I2cPhaseKind::BusLost, {}, 0);
+    answer(port, phase, I2cPhaseKind::BusLost, reply, earliest);
 }
 
 void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& reply,

@@ -232,7 +232,7 @@ class I2cBusNode final : public Node {
     void decide_ninth_clock();
     void answer_masters(const Pending& done, I2cPhaseKind kind, const I2cAnswer& reply);
     void bus_freed();
-    void lose(PortIndex port, const I2cPhase& phase);
+    void lose(PortIndex port, const I2cPhase& phase, const I2cAnswer& reply = {}, Time earliest = 0);
     void answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& answer,
                 Time earliest);
     Time ninth_clock(const I2cPhase& phase) const;

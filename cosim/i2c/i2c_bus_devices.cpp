@@ -9,9 +9,7 @@
 namespace puckloop::cosim {
 
 namespace {
-constexpr Time kRecoveryClocks = 10;  // nine for the device, one for the STOP
-constexpr std::uint8_t kFirstBit = 0x80;
-constexpr std::uint8_t kReleased = 0xFF;
+constexpr Time kRecoveryClocks = 10;          // nine for the device, one for the STOP
 constexpr Time kHalfClocksBeforeAnswer = 15;  // of the sixteen before the ninth clock
 
 /// A general call, and the first byte of a ten-bit address.
@@ -174,7 +172,7 @@ void I2cBusNode::settle() {
                 {std::max(ninth_clock(done.phase), done.earliest) + done.answer.stretch, port, notice});
     }
     if (done.lost) {
-        answer_masters(done, I2cPhaseKind::BusLost, {false, 0xFF, done.answer.stretch});
+        answer_masters(done, I2cPhaseKind::BusLost, {false, kReleased, done.answer.stretch});
         bus_ = Bus::Recovering;  // until the STOP of whoever has it now
         changes_ = std::max(done.busy_until, now_ + nominal_period_);
         return;
@@ -193,11 +191,10 @@ void I2cBusNode::settle() {
 void I2cBusNode::answer_masters(const Pending& done, I2cPhaseKind kind, const I2cAnswer& reply) {
     const std::vector<PortIndex> masters = sharers_.empty() ? std::vector{done.master} : sharers_;
     for (const PortIndex port : masters) {
-        if (kind == I2cPhaseKind::BusLost) {
-            ++counters_.lost;
-            log_.lost(now_, port, done.phase);
-        }
-        answer(port, done.phase, kind, reply, done.earliest);
+        if (kind == I2cPhaseKind::BusLost)
+            lose(port, done.phase, reply, done.earliest);
+        else
+            answer(port, done.phase, kind, reply, done.earliest);
     }
     if (kind == I2cPhaseKind::BusLost) forget_sharers();
 }

@@ -2,6 +2,7 @@
 // it does next, as their hardware holds it; then the bits decide who goes on (UM10204, 3.1.8).
 
 #include "cosim/i2c/i2c_bus.h"
+#include "cosim/i2c/i2c_figures.h"
 #include "cosim/i2c/i2c_shared.h"
 
 #include <algorithm>
@@ -10,16 +11,12 @@
 namespace puckloop::cosim {
 
 namespace {
-constexpr std::uint8_t kFirstOfTurn = 0x80;
-constexpr int kBitsOfTurn = 8;
-constexpr std::uint8_t kSdaFree = 0xFF;
-
 /// Who has SDA low first goes on. In the first clock a STOP is low, then high; a repeated START high, then
 /// low; who reads leaves SDA alone.
 std::pair<int, int> turn_order(const I2cPhase& phase) {
     switch (phase.kind) {
     case I2cPhaseKind::Write:
-        return {(phase.byte & kFirstOfTurn) == 0 ? 0 : 3, phase.byte};
+        return {(phase.byte & kFirstBit) == 0 ? 0 : 3, phase.byte};
     case I2cPhaseKind::Stop:
         return {1, 0};
     case I2cPhaseKind::Start:
@@ -33,7 +30,7 @@ std::pair<int, int> turn_order(const I2cPhase& phase) {
 int lost_clock(const I2cPhase& loser, const I2cPhase& winner) {
     if (loser.kind != winner.kind) return 1;
     const auto differs = static_cast<std::uint8_t>(loser.byte ^ winner.byte);
-    return std::min(std::countl_zero(differs) + 1, kBitsOfTurn);
+    return std::min(std::countl_zero(differs) + 1, kBitsOfByte);
 }
 }  // namespace
 
@@ -169,11 +166,8 @@ void I2cBusNode::answer_readers(const Pending& done) {
         if (phase.ack != 0 || (all_known && !line_low_)) {
             answer(reader.port, phase, I2cPhaseKind::Data, done.answer, done.earliest);
         } else if (line_low_) {
-            ++counters_.lost;
-            log_.lost(now_, reader.port, phase);
             phase.byte = byte_read_;
-            answer(reader.port, phase, I2cPhaseKind::BusLost, {false, kSdaFree, done.answer.stretch},
-                   done.earliest);
+            lose(reader.port, phase, {false, kReleased, done.answer.stretch}, done.earliest);
             drop_sharer(reader.port);
         } else {
             refusing_.push_back({reader.port, phase});

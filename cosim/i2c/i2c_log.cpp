@@ -1,5 +1,6 @@
 #include "cosim/i2c/i2c_log.h"
 
+#include "base/times_text.h"
 #include "cosim/i2c/i2c_figures.h"
 
 #include <fmt/format.h>
@@ -7,13 +8,6 @@
 #include <algorithm>
 
 namespace puckloop::cosim {
-
-namespace {
-
-std::string so_far(std::uint64_t count) {
-    return count == 1 ? std::string() : fmt::format(" ({} times so far)", count);
-}
-}  // namespace
 
 I2cLog::I2cLog(const std::string& path, std::vector<std::string> masters)
     : log_(path), masters_(std::move(masters)) {}
@@ -38,15 +32,15 @@ void I2cLog::answered(Time now, PortIndex master, const I2cPhase& answer, bool t
     Pair& pair = pairs_[{master, address_}];
     if (refused && to_start && is_milestone(++pair.absent))
         write(now, fmt::format("{}: nobody acknowledges 0x{:02x}{}", masters_[master], address_,
-                               so_far(pair.absent)));
+                               so_far_text(pair.absent)));
     if (refused && !to_start && is_milestone(++pair.refused_bytes))
         write(now, fmt::format("{}: 0x{:02x} does not acknowledge byte 0x{:02x}{}", masters_[master],
-                               address_, answer.byte, so_far(pair.refused_bytes)));
+                               address_, answer.byte, so_far_text(pair.refused_bytes)));
     if (!stretched) return;
     pair.longest_stretch = std::max(pair.longest_stretch, answer.stretch);
     if (is_milestone(++pair.stretches))
         write(now, fmt::format("{}: 0x{:02x} stretches the clock by {:.3f} us{}", masters_[master], address_,
-                               microseconds(answer.stretch), so_far(pair.stretches)));
+                               microseconds(answer.stretch), so_far_text(pair.stretches)));
 }
 
 void I2cLog::lost(Time now, PortIndex master, const I2cPhase& phase) {
@@ -54,17 +48,18 @@ void I2cLog::lost(Time now, PortIndex master, const I2cPhase& phase) {
     const std::string what = phase.kind == I2cPhaseKind::Start
                                  ? fmt::format("START for 0x{:02x}", phase.byte >> 1)
                                  : std::string("byte sent without owning it");
-    write(now, fmt::format("{}: loses the bus, {}{}", masters_[master], what, so_far(losses_[master])));
+    write(now, fmt::format("{}: loses the bus, {}{}", masters_[master], what, so_far_text(losses_[master])));
 }
 
 void I2cLog::crowded(Time now, std::uint8_t byte, const std::string& names, std::uint64_t times) {
     if (!is_milestone(times)) return;
-    write(now, fmt::format("0x{:02x} is acknowledged by {} together{}", byte >> 1, names, so_far(times)));
+    write(now,
+          fmt::format("0x{:02x} is acknowledged by {} together{}", byte >> 1, names, so_far_text(times)));
 }
 
 void I2cLog::stuck(Time now, const std::string& names, std::uint64_t times) {
     if (!is_milestone(times)) return;
-    write(now, fmt::format("stuck: the master gave up, {} holds SCL low{}", names, so_far(times)));
+    write(now, fmt::format("stuck: the master gave up, {} holds SCL low{}", names, so_far_text(times)));
 }
 
 void I2cLog::released(Time now, const std::string& names) {

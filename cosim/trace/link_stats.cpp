@@ -11,7 +11,6 @@ namespace {
 
 // Half a bit is lost after ten bits at 5 %; a receiver of 16 samples a bit gives up a little earlier.
 constexpr double kReadableRateError = 0.04;
-constexpr double kPicosecondsOfSecond = 1e12;
 
 enum RecordedParity : std::uint8_t { kNoParity = 0, kOdd = 1 };
 
@@ -34,7 +33,8 @@ void LinkStats::count(const TraceRecord& record, double nominal_baud) {
         ++uart_frames;
         if (frame->is_break) ++uart_breaks;
         if (!parity_fits(*frame)) ++uart_parity_errors;
-        const double ratio = static_cast<double>(frame->bit_period) * nominal_baud / kPicosecondsOfSecond;
+        const double ratio =
+            static_cast<double>(frame->bit_period) * nominal_baud / static_cast<double>(kSecond);
         if (std::abs(ratio - 1.0) > kReadableRateError) ++uart_off_rate;
     } else if (const auto* phase = std::get_if<I2cPhase>(&record.payload)) {
         switch (phase->kind) {

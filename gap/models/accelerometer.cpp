@@ -4,6 +4,7 @@
 // Deviations: 1. gravity is turned exactly by pitch and roll; the world model takes them as small. 2. The low
 // pass of 150 Hz is left out: rows are 10 ms and more apart.
 
+#include "gap/models/gravity.h"
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "physics/description/robot_constants.h"
@@ -18,7 +19,6 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kStandardGravity = 9.81;
 constexpr const char* kAxes[] = {"ax", "ay", "az"};
 
 class AccelerometerModel final : public ModelOf<physics::Parameters> {
@@ -39,9 +39,8 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
             for (std::size_t i = 0; i < pitch.size(); ++i) {
                 const double sp = std::sin(pitch[i]), cp = std::cos(pitch[i]), sr = std::sin(roll[i]),
                              cr = std::cos(roll[i]);
-                one.felt.push_back(
-                    {-left[i] * cr / kStandardGravity - cp * sr, -forward[i] * cp / kStandardGravity - sp,
-                     cp * cr - forward[i] * sp / kStandardGravity - left[i] * sr / kStandardGravity});
+                one.felt.push_back({-left[i] * cr / kGravity - cp * sr, -forward[i] * cp / kGravity - sp,
+                                    cp * cr - forward[i] * sp / kGravity - left[i] * sr / kGravity});
             }
             for (double& speed : one.motor)
                 speed = std::abs(speed) / physics::kSpeedUnit;

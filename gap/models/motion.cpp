@@ -8,6 +8,7 @@
 // costs at friction mu. 2. Between rows speed is even. 3. No contacts with things.
 
 #include "gap/clean/quantum.h"
+#include "gap/models/gravity.h"
 #include "gap/models/model_of.h"
 #include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
@@ -26,8 +27,7 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kStill = 1e-6;  // steps: less than this between rows is standing
-constexpr double kGravity = 9.81;
+constexpr double kStill = 1e-6;     // steps: less than this between rows is standing
 constexpr double kSlip = 4;         // steps that a motor loses at a time: its coils' pattern repeats
 constexpr double kLateStep = 0.25;  // a step is counted when it is half done or over: 0 to kMostLateStep
 constexpr double kMostLateStep = 0.5;

@@ -1,5 +1,6 @@
 #include "gap/models/motion_path.h"
 
+#include "gap/models/gravity.h"
 #include "gap/stats/robust.h"
 
 #include <algorithm>
@@ -11,11 +12,10 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kDeadBandEdge = 0.004;  // width of the dead band's edge, share of it
-constexpr double kPathGravity = 9.81;
-constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
-constexpr double kSameRowTime = 1e-6;  // s
-constexpr double kLeastChance = 1e-6;  // of losing a command again and again
-constexpr double kLeastTurn = 1e-9;    // rad: what rounding of numbers makes
+constexpr double kLongestSlip = 0.7;     // s: no change of speed costs way for longer
+constexpr double kSameRowTime = 1e-6;    // s
+constexpr double kLeastChance = 1e-6;    // of losing a command again and again
+constexpr double kLeastTurn = 1e-9;      // rad: what rounding of numbers makes
 constexpr double kLeastDensity = 1e-300;
 
 }  // namespace
@@ -49,7 +49,7 @@ double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse
     auto jump = std::ranges::lower_bound(jumps, from - kLongestSlip, {}, &SpeedJump::time);
     for (; jump != jumps.end() && jump->time < to; ++jump) {
         const double speed = std::abs(jump->change) * metre;
-        const double lasts = speed * inverse_mu / kPathGravity;
+        const double lasts = speed * inverse_mu / kGravity;
         const auto done = [&](double t) {
             const double share = std::clamp((t - jump->time) / std::max(lasts, 1e-6), 0.0, 1.0);
             return 1 - (1 - share) * (1 - share);
@@ -57,7 +57,7 @@ double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse
         double way = speed * lasts / 2;
         if (play > 0 && jump->before * (jump->before + jump->change) < 0)
             way -= std::min(play, std::abs(jump->before * (jump->before + jump->change)) * metre * metre *
-                                      inverse_mu / kPathGravity);
+                                      inverse_mu / kGravity);
         sum += std::copysign(way, jump->change) * (done(to) - done(from));
     }
     return sum;

@@ -91,8 +91,7 @@ std::vector<ordered_json> FrameWatch::take(std::size_t& lost) {
 
 void FrameWatch::wait_for(FrameFilter filter, std::string text) {
     wanted_ = std::move(filter);
-    text_ = std::move(text);
-    bytes_.clear();
+    text_ = ByteMatch(std::move(text));
     found_ = nullptr;
     seen_ = false;
     waits_ = true;
@@ -108,14 +107,12 @@ void FrameWatch::record(const cosim::TraceRecord& record) {
     if (!wanted && !captured) return;
     ordered_json frame = frame_json(record, links_);
     if (wanted && wanted_.matches(frame)) {
-        if (text_.empty()) {
+        if (!text_.has_text()) {
             seen_ = true;
             found_ = frame;
         } else if (const auto* uart = std::get_if<cosim::UartFrame>(&record.payload);
                    uart != nullptr && !lost(record)) {
-            bytes_ += static_cast<char>(uart->data);
-            if (bytes_.size() > text_.size()) bytes_.erase(0, 1);
-            seen_ = bytes_ == text_;
+            seen_ = text_.add(static_cast<char>(uart->data));
         }
     }
     const bool kept =

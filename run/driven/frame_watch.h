@@ -2,6 +2,7 @@
 // What a client sees of the lines of a run: frames that it captures, and those that a step waits for.
 
 #include "cosim/trace/trace.h"
+#include "run/expectations/byte_match.h"
 
 #include <nlohmann/json.hpp>
 
@@ -53,7 +54,7 @@ class FrameWatch final : public cosim::TraceSink {
     std::size_t lost_ = 0;
     bool waits_ = false, seen_ = false;
     FrameFilter wanted_;
-    std::string text_, bytes_;  ///< `bytes_`: the last ones, as long as the text
+    ByteMatch text_;
     nlohmann::ordered_json found_;
 };
 

@@ -62,12 +62,6 @@ void judge_line(ExpectationResult& result, const Expectation& expected, std::opt
     decide(result, expected, seen.has_value());
 }
 
-double distance_to(const missions::Region& region, double x, double y) {
-    if (region.disc) return std::max(0.0, std::hypot(x - region.x, y - region.y) - region.radius);
-    return std::hypot(std::max(0.0, std::abs(x - region.x) - region.length / 2),
-                      std::max(0.0, std::abs(y - region.y) - region.width / 2));
-}
-
 void judge_place(ExpectationResult& result, const Expectation& expected, const physics::Paths& paths) {
     const auto path = std::find_if(paths.begin(), paths.end(),
                                    [&](const auto& one) { return one.first == expected.subject; });
@@ -75,15 +69,14 @@ void judge_place(ExpectationResult& result, const Expectation& expected, const p
     if (path != paths.end()) {
         for (const physics::PathPoint& point : path->second) {
             if (point.seconds < expected.after || point.seconds > expected.by) continue;
-            const double distance = distance_to(expected.region, point.x, point.y);
+            const double distance = expected.region.distance({point.x, point.y});
             if (distance < nearest) {
                 nearest = distance;
                 when = point.seconds;
             }
-            if (expected.region.holds({point.x, point.y})) {
-                result.at = point.seconds;
-                break;
-            }
+            if (nearest > 0.0) continue;
+            result.at = when;
+            break;
         }
     }
     result.why = result.at ? fmt::format("there at {:.3f} s", *result.at)
@@ -165,11 +158,15 @@ std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const c
     return results;
 }
 
+std::string unmet_text(const ExpectationResult& result) {
+    return fmt::format("expected that {}: {}", result.name, result.why);
+}
+
 void fail_unmet(const RunSetup& setup, const std::vector<ExpectationResult>& results,
                 std::vector<Failure>& failures, cosim::Outcome& outcome) {
     for (const ExpectationResult& result : results) {
         if (result.met) continue;
-        const std::string text = fmt::format("expected that {}: {}", result.name, result.why);
+        const std::string text = unmet_text(result);
         failures.push_back({result.subject, "expectation", text, false});
         if (!outcome.success) continue;
         outcome.success = false;

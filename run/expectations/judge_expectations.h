@@ -7,6 +7,7 @@
 #include "run/report/expectation_result.h"
 #include "run/report/failures.h"
 
+#include <string>
 #include <vector>
 
 namespace puckloop::tools {
@@ -17,6 +18,9 @@ void check_expectations(const RunSetup& setup);
 /// After the run, in the order of the tables: from what its nodes reported, from its logs and trajectory.csv.
 std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const cosim::Outcome& outcome,
                                                   const LineWatch& lines);
+
+/// What is said of one that is not met.
+std::string unmet_text(const ExpectationResult& result);
 
 /// The first that is not met makes a run fail that has not failed already; all of them are failures.
 void fail_unmet(const RunSetup& setup, const std::vector<ExpectationResult>& results,

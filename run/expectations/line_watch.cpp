@@ -5,8 +5,11 @@
 namespace puckloop::tools {
 
 LineWatch::LineWatch(const std::vector<scenarios::Expectation>& expected) : expected_(expected) {
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        if (expected[i].kind == scenarios::Expectation::Kind::Line) watches_.emplace_back().index = i;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (expected[i].kind != scenarios::Expectation::Kind::Line) continue;
+        const ByteMatch match(expected[i].text);
+        watches_.push_back({i, std::nullopt, {match, match}, std::nullopt});
+    }
 }
 
 std::optional<double> LineWatch::seen_at(std::size_t index) const {
@@ -31,11 +34,9 @@ void LineWatch::record(const cosim::TraceRecord& record) {
         const cosim::LinkSpec& link = links_[record.link];
         const bool from_a = record.direction == cosim::Direction::FromA;
         if (!expected.from.empty() && expected.from != (from_a ? link.a : link.b).node) continue;
-        std::string& last = watch.last[from_a ? 0 : 1];
-        last += static_cast<char>(frame->data);
-        if (last.size() > expected.text.size()) last.erase(0, 1);
+        const bool complete = watch.matches[from_a ? 0 : 1].add(static_cast<char>(frame->data));
         const double time = cosim::to_seconds(record.time);
-        if (last == expected.text && time >= expected.after && time <= expected.by) watch.seen = time;
+        if (complete && time >= expected.after && time <= expected.by) watch.seen = time;
     }
 }
 

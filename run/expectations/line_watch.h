@@ -2,6 +2,7 @@
 // Looks in the bytes of serial lines, as they pass, for those that the scenario expects.
 
 #include "cosim/trace/trace.h"
+#include "run/expectations/byte_match.h"
 #include "scenarios/reader/expectation.h"
 
 #include <cstddef>
@@ -28,7 +29,7 @@ class LineWatch final : public cosim::TraceSink {
     struct Watch {
         std::size_t index = 0;
         std::optional<std::size_t> link{};
-        std::string last[2]{};  ///< bytes of each direction, as many as are looked for
+        ByteMatch matches[2]{};  ///< of each direction
         std::optional<double> seen{};
     };
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "base/text_file.h"
+#include "run/expectations/judge_expectations.h"
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -17,7 +18,7 @@ constexpr const char* kRun = "the run goes on to its end";
 constexpr std::size_t kLongestText = 2000;
 
 std::string failure_of(const TestSuite& suite, const ExpectationResult& result) {
-    return fmt::format("{}: {}: expected that {}: {}", suite.scenario, result.place, result.name, result.why);
+    return fmt::format("{}: {}: {}", suite.scenario, result.place, unmet_text(result));
 }
 
 /// What XML and a line of TAP can hold.

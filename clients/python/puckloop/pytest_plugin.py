@@ -57,7 +57,7 @@ def _snapshots(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, p
 @pytest.fixture
 def puckloop_from(request: pytest.FixtureRequest, tmp_path: pathlib.Path, tmp_path_factory: pytest.TempPathFactory,
                   _snapshots: dict[str, pathlib.Path]) -> Start:
-    """A run that stands at `at`, behind its boot: puckloop_from("hello.toml", at="40 s", faults=[...]).
+    """A run that waits at `at`, after its boot: puckloop_from("hello.toml", at="40 s", faults=[...]).
 
     The first test of a session that asks for a scenario, a time and start()'s keywords runs to there and saves; from
     then on each goes on from the snapshot. `faults` and `duration` are the test's own.

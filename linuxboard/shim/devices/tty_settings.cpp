@@ -16,7 +16,6 @@ constexpr std::array<std::pair<speed_t, int>, 30> kSpeeds{{
     {B576000, 576000},   {B921600, 921600},   {B1000000, 1000000}, {B1152000, 1152000}, {B1500000, 1500000},
     {B2000000, 2000000}, {B2500000, 2500000}, {B3000000, 3000000}, {B3500000, 3500000}, {B4000000, 4000000},
 }};
-constexpr double kPicosecondsOfSecond = 1e12;
 }  // namespace
 
 termios initial_termios() {
@@ -55,7 +54,7 @@ int baud_rate(speed_t speed) {
 cosim::Time bit_period(const termios& settings, double ppm) {
     const int rate = baud_rate(cfgetospeed(&settings));
     if (rate == 0) return 0;
-    return std::llround(kPicosecondsOfSecond / (rate * (1.0 + ppm * 1e-6)));
+    return std::llround(static_cast<double>(cosim::kSecond) / (rate * (1.0 + ppm * 1e-6)));
 }
 
 protocols::UartReceiver receiver_of(const termios& settings, double ppm) {

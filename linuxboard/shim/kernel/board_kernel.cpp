@@ -20,7 +20,6 @@ namespace {
 /// VTIME counts tenths of a second.
 constexpr Time kVtimeUnit = 100 * cosim::kMillisecond;
 
-constexpr double kPicosecondsPerSecond = 1e12;
 constexpr int kInputEvents = POLLIN | POLLRDNORM;
 
 template <typename T>
@@ -68,7 +67,8 @@ std::string bytes_of(const T& object) {
 BoardKernel::BoardKernel(const LinuxSpec& spec, LinuxFaults& faults)
     : faults_(faults),
       tty_(spec.clock_ppm, spec.fifo_trigger, spec.tty_batch),
-      adapter_(std::llround(kPicosecondsPerSecond / spec.i2c_hertz), spec.i2c_nack_error, spec.i2c_hold),
+      adapter_(std::llround(static_cast<double>(cosim::kSecond) / spec.i2c_hertz), spec.i2c_nack_error,
+               spec.i2c_hold),
       has_tty_(!spec.tty.empty()),
       i2c_files_(spec.i2c.size()) {}
 

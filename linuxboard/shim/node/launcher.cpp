@@ -36,7 +36,6 @@ constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
 constexpr rlim_t kUsualDescriptors = 1024;
 constexpr rlim_t kFewestDescriptors = 32;  // of a program; with fewer it is not started
 constexpr rlim_t kPrivateDescriptors = 5;  // link and page; on their way there a copy of each, and the report
-constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
 
 [[noreturn]] void fail(const std::string& what) {
     const int error = errno;
@@ -45,21 +44,9 @@ constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
                     error == EMFILE ? " (a program takes 3 here; ulimit -n 4096 raises the limit)" : ""));
 }
 
-/// Under a limit of file sizes (ulimit -f) this is an error like any other, no signal.
 void resize_shared(int fd, std::uint64_t size) {
-    sigset_t limit, before;
-    sigemptyset(&limit);
-    sigaddset(&limit, SIGXFSZ);
-    pthread_sigmask(SIG_BLOCK, &limit, &before);
-    const bool done = ftruncate(fd, static_cast<off_t>(size)) == 0;
-    const int error = errno;
-    const timespec at_once{};
-    while (!done && sigtimedwait(&limit, nullptr, &at_once) > 0) {
-    }
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    errno = error;
-    if (done) return;
-    if (error == EFBIG)
+    if (ftruncate(fd, static_cast<off_t>(size)) == 0) return;
+    if (errno == EFBIG)
         throw RunError(
             fmt::format("shared memory of a program: {} bytes are more than the limit of file sizes "
                         "allows (ulimit -f)",
@@ -199,7 +186,7 @@ void Launcher::prepare_page() {
     page_ = new (memory) wire::Page;
     page_->real_time = spec_.real_time ? 1 : 0;
     page_->ask_always = spec_.ask_always ? 1 : 0;
-    page_->epoch = spec_.epoch_s * kNanosecondsOfSecond;
+    page_->epoch = spec_.epoch_s * (cosim::kSecond / cosim::kNanosecond);
     page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
     page_->clock_error = clock_error_of(spec_);
     page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();

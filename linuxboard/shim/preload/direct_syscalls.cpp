@@ -6,6 +6,7 @@
 
 #include "linuxboard/shim/preload/fault_signals.h"
 #include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/kernel_signals.h"
 
 #include <elf.h>
 #include <link.h>
@@ -70,13 +71,8 @@ void hide_vdso() {
 
 /// Where a handler of the C library's sigaction() returns to: it is in the range that is let through.
 std::uintptr_t return_of_handlers() {
-    struct {
-        void* handler;
-        unsigned long flags;
-        void* restorer;
-        std::uint64_t mask;
-    } action{};
-    host_call(SYS_rt_sigaction, SIGSYS, 0, reinterpret_cast<long>(&action), sizeof action.mask);
+    KernelAction action{};
+    host_call(SYS_rt_sigaction, SIGSYS, 0, reinterpret_cast<long>(&action), kKernelSetSize);
     return reinterpret_cast<std::uintptr_t>(action.restorer);
 }
 
@@ -87,7 +83,8 @@ long conducted_call(long number, long a, long b, long c, long d, long e, long f)
 /// What the call changed of this thread is what its instruction goes on with, not what it was before.
 void keep_changes(long number, ucontext_t& context) {
     if (number == SYS_rt_sigprocmask)
-        host_call(SYS_rt_sigprocmask, SIG_BLOCK, 0, reinterpret_cast<long>(&context.uc_sigmask), 8);
+        host_call(SYS_rt_sigprocmask, SIG_BLOCK, 0, reinterpret_cast<long>(&context.uc_sigmask),
+                  kKernelSetSize);
     if (number == SYS_sigaltstack) host_call(SYS_sigaltstack, 0, reinterpret_cast<long>(&context.uc_stack));
 }
 

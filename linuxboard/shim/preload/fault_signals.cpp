@@ -1,6 +1,6 @@
 // Signals of faults. This library's handler comes first: it ends a copy that met a bad pointer, counts faults
 // that a program's own handler goes back to again and again, and hands on the rest as the kernel would.
-// SIGSYS is one of them since system calls past the C library arrive by it (syscalls/direct_syscalls.h).
+// SIGSYS is one of them since system calls past the C library arrive by it (direct_syscalls.h).
 
 #include "linuxboard/shim/preload/fault_signals.h"
 

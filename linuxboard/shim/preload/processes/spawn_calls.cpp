@@ -46,12 +46,16 @@ struct SpawnCopy {
     char* const* environment;
 };
 
+bool has_flag(const posix_spawnattr_t* attributes, int flag) {
+    short flags = 0;
+    if (attributes != nullptr) posix_spawnattr_getflags(attributes, &flags);
+    return (flags & flag) != 0;
+}
+
 /// In the copy, in the order of glibc; 0, or the error.
 int take_attributes(const posix_spawnattr_t* attributes) {
     if (attributes == nullptr) return 0;
-    short flags = 0;
-    posix_spawnattr_getflags(attributes, &flags);
-    const auto has = [flags](int flag) { return (flags & flag) != 0; };
+    const auto has = [attributes](int flag) { return has_flag(attributes, flag); };
     sigset_t defaults;
     sigemptyset(&defaults);
     if (has(POSIX_SPAWN_SETSIGDEF)) posix_spawnattr_getsigdefault(attributes, &defaults);
@@ -78,9 +82,7 @@ int take_attributes(const posix_spawnattr_t* attributes) {
 [[noreturn]] void become(const SpawnCopy& spawn, int answer) {
     int error = take_attributes(spawn.attributes);
     if (error == 0) error = take_actions(spawn.actions, answer);
-    short flags = 0;
-    if (spawn.attributes != nullptr) posix_spawnattr_getflags(spawn.attributes, &flags);
-    if ((flags & POSIX_SPAWN_SETSIGMASK) != 0) {
+    if (has_flag(spawn.attributes, POSIX_SPAWN_SETSIGMASK)) {
         sigset_t mask;
         posix_spawnattr_getsigmask(spawn.attributes, &mask);
         pthread_sigmask(SIG_SETMASK, &mask, nullptr);

@@ -1,6 +1,7 @@
 // System calls on descriptors: devices, pipes, waiting.
 
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/kernel_signals.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
@@ -24,12 +25,13 @@
 namespace puckloop::shim {
 
 namespace {
-/// The kernel's set of signals, whose 8 bytes the C library's begins with, as the library's; nullptr stays.
+/// The kernel's set of signals as the C library's; nullptr stays.
 class Mask {
   public:
     explicit Mask(const void* kernels) {
-        sigemptyset(&set_);
-        given_ = kernels != nullptr && copy_from_program(&set_, kernels, 8);
+        std::uint64_t mask = 0;
+        given_ = kernels != nullptr && get_from_program(mask, kernels);
+        set_ = set_of_kernel(mask);
     }
     operator const sigset_t*() const { return given_ ? &set_ : nullptr; }
 

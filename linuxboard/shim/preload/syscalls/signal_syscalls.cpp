@@ -1,6 +1,7 @@
 // System calls for signals. The kernel's sets of signals have 8 bytes, the C library's more.
 
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/kernel_signals.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
@@ -16,39 +17,9 @@
 namespace puckloop::shim {
 
 namespace {
-constexpr std::size_t kSetSize = 8;
-
-/// struct sigaction as the kernel has it on x86-64; where there is no restorer the field is left out.
-struct KernelAction {
-    void* handler;
-    unsigned long flags;
-#if defined(__x86_64__)
-    void* restorer;
-#endif
-    std::uint64_t mask;
-};
-#if defined(__x86_64__)
-constexpr unsigned long kHasRestorer = 0x04000000;  // SA_RESTORER
-#else
-constexpr unsigned long kHasRestorer = 0;
-#endif
-
-sigset_t set_of(std::uint64_t mask) {
-    sigset_t set;
-    sigemptyset(&set);
-    std::memcpy(&set, &mask, kSetSize);
-    return set;
-}
-
-std::uint64_t mask_of(const sigset_t& set) {
-    std::uint64_t mask = 0;
-    std::memcpy(&mask, &set, kSetSize);
-    return mask;
-}
-
 /// The handler returns by the C library's code, whatever the program has of its own.
 long set_action(int number, const void* theirs, void* before, std::size_t size) {
-    if (size != kSetSize) return failed(EINVAL);
+    if (size != kKernelSetSize) return failed(EINVAL);
     struct sigaction action {
     }, old{};
     if (theirs != nullptr) {
@@ -56,42 +27,42 @@ long set_action(int number, const void* theirs, void* before, std::size_t size) 
         if (!get_from_program(wanted, theirs)) return -1;
         action.sa_handler = reinterpret_cast<sighandler_t>(wanted.handler);
         action.sa_flags = static_cast<int>(wanted.flags & ~kHasRestorer);
-        action.sa_mask = set_of(wanted.mask);
+        action.sa_mask = set_of_kernel(wanted.mask);
     }
     if (sigaction(number, theirs != nullptr ? &action : nullptr, &old) < 0) return -1;
     if (before == nullptr) return 0;
     KernelAction shown{};
     shown.handler = reinterpret_cast<void*>(old.sa_handler);
     shown.flags = static_cast<unsigned>(old.sa_flags);
-    shown.mask = mask_of(old.sa_mask);
+    shown.mask = kernel_mask(old.sa_mask);
     return put_to_program(before, shown) ? 0 : -1;
 }
 
 long set_mask(int how, const void* theirs, void* before, std::size_t size) {
-    if (size != kSetSize) return failed(EINVAL);
+    if (size != kKernelSetSize) return failed(EINVAL);
     std::uint64_t mask = 0;
     if (theirs != nullptr && !get_from_program(mask, theirs)) return -1;
-    const sigset_t set = set_of(mask);
+    const sigset_t set = set_of_kernel(mask);
     sigset_t old;
     sigemptyset(&old);
     if (const int error = pthread_sigmask(how, theirs != nullptr ? &set : nullptr, &old))
         return failed(error);
-    return before == nullptr || put_to_program(before, mask_of(old)) ? 0 : -1;
+    return before == nullptr || put_to_program(before, kernel_mask(old)) ? 0 : -1;
 }
 
 long suspend(const void* theirs, std::size_t size) {
     std::uint64_t mask = 0;
-    if (size != kSetSize) return failed(EINVAL);
+    if (size != kKernelSetSize) return failed(EINVAL);
     if (!get_from_program(mask, theirs)) return -1;
-    const sigset_t set = set_of(mask);
+    const sigset_t set = set_of_kernel(mask);
     return sigsuspend(&set);
 }
 
 long wait_for_signal(const Argument (&a)[6]) {
     std::uint64_t mask = 0;
-    if (a[3].value != static_cast<long>(kSetSize)) return failed(EINVAL);
+    if (a[3].value != static_cast<long>(kKernelSetSize)) return failed(EINVAL);
     if (!get_from_program(mask, a[0])) return -1;
-    const sigset_t set = set_of(mask);
+    const sigset_t set = set_of_kernel(mask);
     return sigtimedwait(&set, a[1], a[2]);
 }
 
