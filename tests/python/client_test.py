@@ -142,7 +142,7 @@ class Client(InFolder):
         run = self.begun()
         run.step(to="100 ms")
         run._line.close()
-        self.assertEqual(run._process.wait(60), 1)
+        self.assertEqual(run._launched.process.wait(60), 1)
         report = json.loads((run.results / "report.json").read_text())
         self.assertFalse(report["success"])
         self.assertIn("its client went away", report["ended_why"])

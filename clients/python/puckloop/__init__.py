@@ -7,13 +7,17 @@
         print(run.board("robot0.pic").register("PORTA").value)
 
 Simulated time stands still between two calls: what is done at a simulated time depends on nothing else. Times are
-texts with a unit ("20 ms") or numbers of seconds. Needs Python 3.11 or newer and nothing besides.
+texts with a unit ("20 ms") or numbers of seconds. puckloop.aio has the same for asyncio. Needs Python 3.11 or newer
+and nothing besides.
 """
 
-from .errors import (ProtocolError, PuckloopError, RequestError, RunEnded, StartError)
+from .errors import NobodyServes, ProtocolError, PuckloopError, RequestError, RunEnded, StartError
+from .launch import program
 from .records import Ended, Frame, Register, Stepped, Value
-from .run import Board, Dut, Run, from_snapshot, start
+from .run import Board, Dut, Run, attach, from_snapshot, start
 from .scenario import Scenario
+from .tables import dataframe, table
 
-__all__ = ["Board", "Dut", "Ended", "Frame", "ProtocolError", "PuckloopError", "Register", "RequestError", "Run",
-           "RunEnded", "Scenario", "StartError", "Stepped", "Value", "from_snapshot", "start"]
+__all__ = ["Board", "Dut", "Ended", "Frame", "NobodyServes", "ProtocolError", "PuckloopError", "Register",
+           "RequestError", "Run", "RunEnded", "Scenario", "StartError", "Stepped", "Value", "attach", "dataframe",
+           "from_snapshot", "program", "start", "table"]

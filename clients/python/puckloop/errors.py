@@ -9,6 +9,10 @@ class StartError(PuckloopError):
     """The run did not begin: the program is not there, or refused its scenario or options."""
 
 
+class NobodyServes(StartError):
+    """There is a socket, or its name, and no run behind it."""
+
+
 class ProtocolError(PuckloopError):
     """The program speaks another version of the protocol, or something else."""
 

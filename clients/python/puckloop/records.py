@@ -21,7 +21,7 @@ class Frame:
     @property
     def time_s(self) -> float:
         """Simulated time of delivery in seconds."""
-        return self.time_ps * 1e-12
+        return self.time_ps / 1e12
 
     @property
     def byte(self) -> int:
@@ -75,7 +75,7 @@ class Stepped:
     @property
     def time_s(self) -> float:
         """Simulated time in seconds."""
-        return self.time_ps * 1e-12
+        return self.time_ps / 1e12
 
 
 @dataclasses.dataclass(frozen=True)
