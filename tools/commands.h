@@ -12,6 +12,7 @@ void declare_run(Command& app, int& status);
 void declare_import(Command& app, int& status);
 void declare_replay(Command& app, int& status);
 void declare_act(Command& app, int& status);
+void declare_mcp(Command& app, int& status);
 void declare_exec(Command& app, int& status);
 void declare_step(Command& app, int& status);
 void declare_asm(Command& app, int& status);
@@ -34,6 +35,7 @@ inline constexpr std::array kCommands{
     declare_import,
     declare_replay,
     declare_act,
+    declare_mcp,
     declare_exec,
     declare_step,
     declare_asm,

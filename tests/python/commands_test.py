@@ -7,7 +7,7 @@ import unittest
 
 from kit import SOURCE, InFolder, puckloop
 
-COMMANDS = ["run", "replay", "act", "exec", "new", "list", "check", "images", "schema", "trace", "frames", "faults",
+COMMANDS = ["run", "replay", "act", "mcp", "exec", "new", "list", "check", "images", "schema", "trace", "frames", "faults",
             "experiment", "gap", "bench", "test", "step", "asm", "disasm", "upload", "help", "version"]
 
 

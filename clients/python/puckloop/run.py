@@ -141,6 +141,11 @@ class Run:
         return list(self._launched.command)
 
     @property
+    def faults(self) -> list[str]:
+        """Those that it was begun with, and those of fault()."""
+        return list(self._launched.plan.faults) if isinstance(self._launched, Launched) else []
+
+    @property
     def nodes(self) -> list[str]:
         """Names of all nodes."""
         return self._session.nodes
