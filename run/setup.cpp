@@ -185,12 +185,21 @@ void add_world(RunSetup& setup, const RunRequest& request) {
     physics::EventPlan& events = setup.scenario.events;
     events.live = request.realtime || request.paced;
     events.repeats = !request.realtime || programs_of(setup.scenario) == 0;
+    const auto& program = setup.scenario.mission_program;
+    events.mission = program.has_value();
     if (events.any()) events.journal = (setup.out / "events.toml").string();
     if (events.live) setup.control = new_control_path();
     WorldSpec spec{.world = setup.scenario.world,
                    .events = events,
                    .control = setup.control,
-                   .bluetooth = scenarios::has_bluetooth(setup.scenario)};
+                   .bluetooth = scenarios::has_bluetooth(setup.scenario),
+                   .tracker = setup.scenario.tracker};
+    if (program)
+        spec.mission = {.command = program->command,
+                        .better = program->better,
+                        .timeout = program->timeout,
+                        .log = (setup.out / "mission.log").string(),
+                        .duration = setup.scenario.duration};
     setup.nodes.push_back({"world", {std::move(spec)}});
     setup.nodes.back().any_thread = !events.live;
 }

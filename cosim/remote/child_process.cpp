@@ -28,13 +28,18 @@ constexpr std::chrono::milliseconds kReapPoll{5};  // where the kernel has no de
 
 /// In the child, between fork and exec: nothing here may allocate or lock.
 [[noreturn]] void become(const char* program, char* const* arguments, std::span<const int> descriptors,
-                         pid_t parent) {
+                         const ChildStreams& streams, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(kExecFailed);
     setpgid(0, 0);
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);
+    const int nothing =
+        open("/dev/null", O_RDONLY);  // no terminal to read from: the group is a background one
+    dup2(streams.in < 0 ? nothing : streams.in, STDIN_FILENO);
+    if (streams.out >= 0) dup2(streams.out, STDOUT_FILENO);
+    if (streams.error >= 0) dup2(streams.error, STDERR_FILENO);
     // First out of each other's way, then to where they belong.
     const int end = protocol::kDescriptor + static_cast<int>(descriptors.size());
     int moved[kMostDescriptors];
@@ -42,10 +47,7 @@ constexpr std::chrono::milliseconds kReapPoll{5};  // where the kernel has no de
         moved[i] = fcntl(descriptors[i], F_DUPFD, end);
     for (std::size_t i = 0; i < descriptors.size(); ++i)
         dup2(moved[i], protocol::kDescriptor + static_cast<int>(i));
-    // No terminal to read from (the group is a background one), no files of the parent.
-    const int nothing = open("/dev/null", O_RDONLY);
-    dup2(nothing, STDIN_FILENO);
-    close_range(static_cast<unsigned>(end), ~0u, 0);
+    close_range(static_cast<unsigned>(end), ~0u, 0);  // no files of the parent
     execv(program, arguments);
     _exit(kExecFailed);
 }
@@ -65,7 +67,7 @@ void await_end(pid_t id, std::chrono::milliseconds patience) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::string& title,
-                           std::span<const int> descriptors) {
+                           std::span<const int> descriptors, const ChildStreams& streams) {
     if (descriptors.size() > kMostDescriptors) throw RunError("too many descriptors for a process");
     std::vector<std::string> words = command;
     words.front() = title;
@@ -76,7 +78,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::s
     const pid_t parent = getpid();
     id_ = fork();
     if (id_ < 0) throw RunError(fmt::format("cannot start a process: {}", std::strerror(errno)));
-    if (id_ == 0) become(command.front().c_str(), arguments.data(), descriptors, parent);
+    if (id_ == 0) become(command.front().c_str(), arguments.data(), descriptors, streams, parent);
     setpgid(id_, id_);  // whoever of the two comes first
 }
 

@@ -11,14 +11,19 @@
 
 namespace puckloop::cosim {
 
+/// What a child has as standard streams; -1: nothing to read, the parent's output and error.
+struct ChildStreams {
+    int in = -1, out = -1, error = -1;
+};
+
 class ChildProcess {
   public:
     /// Starts `command` (program and arguments) with `descriptors` as 3, 4, ..., in a process group of its
     /// own; ps shows it as `title` and its arguments. The group is its own so that a Ctrl-C at the terminal
-    /// reaches the parent alone, and with an empty standard input. The kernel kills it when the parent dies.
-    /// Throws RunError.
+    /// reaches the parent alone. The kernel kills it when the parent dies. A program that cannot be executed
+    /// exits with status 127. Throws RunError.
     ChildProcess(const std::vector<std::string>& command, const std::string& title,
-                 std::span<const int> descriptors);
+                 std::span<const int> descriptors, const ChildStreams& streams = {});
     /// Kills the whole group and reaps the child.
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;

@@ -28,7 +28,8 @@ struct Range {
     double low, high;
 };
 constexpr Range kProperties[] = {{"grey", 0, 1},    {"ambient", 0, 100},     {"intensity", 0, 100},
-                                 {"level", 0, 1e5}, {"reflectivity", 0, 10}, {"charge", 0, 1}};
+                                 {"level", 0, 1e5}, {"reflectivity", 0, 10}, {"charge", 0, 1},
+                                 {"ground", 0, 1}};
 
 std::string out_of(const char* what, double value, double low, double high) {
     if (value >= low && value <= high) return {};
@@ -99,6 +100,7 @@ class EventChecker {
             if (action.object == kEveryRobot) return;
             [[fallthrough]];
         case Verb::Lift:
+        case Verb::Unset:
         case Verb::Put:
         case Verb::Select:
         case Verb::Reset:
@@ -147,7 +149,7 @@ class EventChecker {
             if (kind == kRoomLight) return p == "ambient";
             if (kind == "lamp") return p == "intensity";
             if (kind == "speaker") return p == "level";
-            if (kind == "robot") return p == "charge";
+            if (kind == "robot") return p == "charge" || p == "ground";
             return p == "reflectivity";
         };
         const bool room =
@@ -231,7 +233,7 @@ class EventChecker {
 }  // namespace
 
 std::string problem_of(const Action& action) {
-    if (action.verb < Verb::Move || action.verb > Verb::Remote) return "unknown action";
+    if (action.verb < Verb::Move || action.verb > Verb::Unset) return "unknown action";
     const auto& to = action.to;
     if (std::string problem =
             first_of({to ? out_of("x", to->x, -kFarthestOfEvents, kFarthestOfEvents) : "",

@@ -22,6 +22,7 @@ enum class Verb : std::uint8_t {
     Select,     ///< robot: its selector to a position
     Reset,      ///< robot: its reset button
     Remote,     ///< robot, or all: a key of the remote control
+    Unset,      ///< robot: its sensors see the world again, after Set of what is not there
 };
 
 /// Objects of Set that are no things.
@@ -48,7 +49,8 @@ struct Action {
     std::optional<double> heading{};  ///< Move, Put
     double over = 0.0;                ///< s, Move: how long it glides; 0: at once
     NewThing thing{};                 ///< Add
-    std::string property{};  ///< Set: "grey", "ambient", "intensity", "level", "reflectivity", "charge"
+    std::string property{};  ///< Set: "grey", "ambient", "intensity", "level", "reflectivity", "charge",
+                             ///< "ground": what a robot's ground sensors see in place of the floor
     double value = 0.0;      ///< Set
     int number = 0;          ///< Select: position 0..15. Remote: key 0..63
     int address = 0;         ///< Remote: 0..31
@@ -91,13 +93,14 @@ struct Event {
 /// All that may happen to one world.
 struct EventPlan {
     std::vector<Event> events{};
-    bool live = false;  ///< commands may come in while it runs
+    bool live = false;     ///< commands may come in while it runs
+    bool mission = false;  ///< a mission program may act (physics/tracker)
     bool repeats =
         true;  ///< a run with the same events is the same run; false: programs have a clock of their own
     std::string journal{};  ///< file for what was done, as [[event]] tables with times; empty: none
 
     /// Can anything happen? A world without is as if there were no events at all.
-    bool any() const { return live || !events.empty(); }
+    bool any() const { return live || mission || !events.empty(); }
 };
 
 /// What is wrong with an action whatever world it is done to: ranges, sizes. Empty: nothing.

@@ -23,7 +23,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Action, verb, object, to, relative, heading, 
                                    number, address, hold, command, toml)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Condition, kind, robot, other, at, radius, length, width, distance, on)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Event, name, file, place, at, when, delay, every, count, action)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, live, repeats, journal)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, live, mission, repeats, journal)
 
 std::string to_json(const EventPlan& plan) {
     return nlohmann::json(plan).dump();

@@ -62,6 +62,8 @@ std::string Scene::apply(const Action& action) {
     case Verb::SwitchOff:
     case Verb::SwitchOn:
         return switch_over(action, what);
+    case Verb::Unset:
+        return unset(action, what);
     default:
         return fmt::format("nothing of '{}' happens in the world", action.command);
     }
@@ -242,6 +244,11 @@ std::string Scene::set(const Action& action, Found what) {
         model_.robots_[what.index].set_charge(action.value);
         return {};
     }
+    if (what.kind == Kind::Robot && property == "ground") {
+        model_.robots_[what.index].set_felt_ground(action.value);
+        scene_changed();
+        return {};
+    }
     double* value = nullptr;
     if (what.kind == Kind::Lamp && property == "intensity") value = &world.lamps[what.index].intensity;
     if (what.kind == Kind::Speaker && property == "level") value = &world.speakers[what.index].level;
@@ -255,6 +262,16 @@ std::string Scene::set(const Action& action, Found what) {
     if (value == nullptr) return fmt::format("'{}' has no {}", action.object, property);
     *value = action.value;
     was_on_.erase(action.object);
+    scene_changed();
+    return {};
+}
+
+std::string Scene::unset(const Action& action, Found what) {
+    if (what.kind != Kind::Robot) return fmt::format("'{}' is no robot", action.object);
+    if (!model_.robot(what.index).felt_ground())
+        return fmt::format("'{}' sees the floor as it is (expected set {} ground GREY before)", action.object,
+                           action.object);
+    model_.robots_[what.index].set_felt_ground(std::nullopt);
     scene_changed();
     return {};
 }

@@ -38,10 +38,21 @@ void add_events(const Journal& journal, nlohmann::ordered_json& report) {
     if (const auto warnings = journal.warnings(); !warnings.empty()) report["warnings"] = warnings;
 }
 
+/// The tracker, if there is one, takes the place of `commands`.
+Overhead* watch(std::unique_ptr<CommandSource>& commands, std::optional<TrackerPlan> tracker,
+                const WorldModel& model) {
+    if (!tracker) return nullptr;
+    auto overhead = std::make_unique<Overhead>(*std::move(tracker), std::move(commands), model);
+    Overhead* watching = overhead.get();
+    commands = std::move(overhead);
+    return watching;
+}
+
 }  // namespace
 
 struct WorldNode::Impl {
-    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands, bool bluetooth);
+    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands, bool bluetooth,
+         std::optional<TrackerPlan> tracker);
     void add_cameras();
     void take(const cosim::Message& message);
     void step();
@@ -67,6 +78,7 @@ struct WorldNode::Impl {
     std::optional<BoothRecord> booth_record;
     WorldLog log;
     std::unique_ptr<CommandSource> commands;
+    Overhead* overhead = nullptr;  // it is `commands`
     Timeline timeline;
     std::vector<std::string> happened;       // scratch
     std::vector<BoardSignal> board_signals;  // scratch
@@ -74,11 +86,12 @@ struct WorldNode::Impl {
 };
 
 WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> source,
-                      bool bluetooth)
+                      bool bluetooth, std::optional<TrackerPlan> tracker)
     : model(std::move(description)),
       sound(model.description(), kPortsOfRobot),
       log(model),
       commands(std::move(source)),
+      overhead(watch(commands, std::move(tracker), model)),
       timeline(model, std::move(plan), commands.get()) {
     check_events(timeline.plan(), model.description());
     for (const auto& robot : model.description().robots) {
@@ -158,6 +171,7 @@ void WorldNode::Impl::take(const cosim::Message& message) {
 /// To the state at next_step, and what happens to it there.
 void WorldNode::Impl::step() {
     if (next_step > 0) model.move_bodies();
+    if (overhead != nullptr) overhead->at_step(model, timeline.journal());
     if (timeline.active()) {
         happened.clear();
         timeline.at_step(happened);
@@ -243,9 +257,9 @@ void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
 }
 
 WorldNode::WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands,
-                     bool bluetooth)
-    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands), bluetooth)) {
-}
+                     bool bluetooth, std::optional<TrackerPlan> tracker)
+    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands), bluetooth,
+                                   std::move(tracker))) {}
 
 WorldNode::~WorldNode() = default;
 
@@ -291,6 +305,10 @@ void WorldNode::observe(StepObserver* observer) {
     impl_->model.observe(observer);
 }
 
+std::optional<cosim::Stop> WorldNode::stop() const {
+    return impl_->overhead == nullptr ? std::nullopt : impl_->overhead->stop();
+}
+
 std::string WorldNode::finish() {
     const auto& model = impl_->model;
     impl_->timeline.end();
@@ -322,6 +340,9 @@ std::string WorldNode::finish() {
     if (model.dynamics().ode_warnings() > 0)
         report["ode_first_message"] = model.dynamics().first_ode_warning();
     if (impl_->timeline.active()) add_events(impl_->timeline.journal(), report);
+    if (impl_->overhead != nullptr)
+        if (const std::string mission = impl_->overhead->finish(model.seconds()); !mission.empty())
+            report["mission"] = nlohmann::ordered_json::parse(mission);
     return report.dump();
 }
 

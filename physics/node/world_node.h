@@ -14,8 +14,10 @@
 #include "physics/description/description.h"
 #include "physics/dynamics/step_observer.h"
 #include "physics/events/command_source.h"
+#include "physics/tracker/overhead.h"
 
 #include <memory>
+#include <optional>
 
 namespace puckloop::physics {
 
@@ -25,9 +27,10 @@ class WorldNode final : public cosim::Node {
     explicit WorldNode(World description) : WorldNode(std::move(description), {}, nullptr) {}
     /// With what happens to it, and where commands come from if the plan has any. Throws as check_events()
     /// too.
-    /// `bluetooth`: it has the port "bluetooth", with the same poses as "ir".
+    /// `bluetooth`: it has the port "bluetooth", with the same poses as "ir". With a mission program the plan
+    /// states so (EventPlan::mission).
     WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands,
-              bool bluetooth = false);
+              bool bluetooth = false, std::optional<TrackerPlan> tracker = {});
     ~WorldNode() override;
 
     std::string_view name() const override;
@@ -36,6 +39,8 @@ class WorldNode final : public cosim::Node {
                  std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
+    /// The mission program's (physics/tracker/mission_source.h).
+    std::optional<cosim::Stop> stop() const override;
     std::string finish() override;
 
     /// Hears of every part of the steps to come; nullptr: nobody does.

@@ -84,7 +84,10 @@ void RobotModel::sense_light(const SensorView& view) {
 }
 
 void RobotModel::look_down(const RobotState& state) {
-    greys_ = ground_.greys(state);
+    if (felt_ground_)
+        greys_.fill(*felt_ground_);
+    else
+        greys_ = ground_.greys(state);
     over_ground_ = state;
 }
 

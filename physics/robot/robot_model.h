@@ -48,6 +48,10 @@ class RobotModel {
     /// Held in the air: nothing is under it or around it.
     void set_lifted(bool lifted) { lifted_ = lifted; }
     bool lifted() const { return lifted_; }
+    /// A grey that its ground sensors see in place of the floor; none: the floor. From the next look_down()
+    /// on.
+    void set_felt_ground(std::optional<double> grey) { felt_ground_ = grey; }
+    const std::optional<double>& felt_ground() const { return felt_ground_; }
     void set_charge(double charge) { battery_.set_charge(charge); }
 
     const ProximityRing& proximity() const { return proximity_; }
@@ -85,6 +89,7 @@ class RobotModel {
     GroundRow ground_;
     RobotState over_ground_;  // when it last looked
     std::array<double, kGroundSensors> greys_{}, greys_to_sample_{};
+    std::optional<double> felt_ground_;
     DelayLine<kGroundSensors> late_greys_;
     DelayLine<1> late_speed_;
     double acceleration_ = 0.0;  // m/s2 forward, over the control period; kept where it tilts the ground row

@@ -4,7 +4,10 @@
 #include "base/fields/field.h"
 #include "physics/description/world_form.h"
 #include "physics/events/event.h"
+#include "physics/tracker/tracker_spec.h"
+#include "run/mission/mission_program_spec.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +25,8 @@ struct WorldSpec {
     physics::EventPlan events{};
     std::string control{};
     bool bluetooth = false;
+    std::optional<physics::TrackerSpec> tracker{};
+    std::optional<MissionProgramSpec> mission{};
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
@@ -30,7 +35,9 @@ struct WorldSpec {
             field("events", &WorldSpec::events, "what happens to it").required().as<EventsForm>(),
             field("control", &WorldSpec::control, "socket at which commands come; empty: none")
                 .not_in(Comparison::Run),
-            field("bluetooth", &WorldSpec::bluetooth, "there is a port for Bluetooth's medium"));
+            field("bluetooth", &WorldSpec::bluetooth, "there is a port for Bluetooth's medium"),
+            field("tracker", &WorldSpec::tracker, "above the arena; a mission program needs one"),
+            field("mission", &WorldSpec::mission, "program that judges the run"));
     }
 };
 static_assert(lists_all_fields<WorldSpec>);

@@ -20,6 +20,7 @@
 #include "run/control/control_socket.h"
 #include "run/factory/camera_scenery.h"
 #include "run/factory/outside_node.h"
+#include "run/mission/mission_program.h"
 #include "run/states/make_resumed.h"
 #include "run/stats/profiled_node.h"
 
@@ -134,9 +135,11 @@ std::unique_ptr<cosim::Node> make(const OutsideSpec& spec, Faults /*none*/) {
 }
 
 std::unique_ptr<cosim::Node> make(const WorldSpec& spec, Faults /*none*/) {
+    std::optional<physics::TrackerPlan> tracker;
+    if (spec.tracker) tracker = {*spec.tracker, spec.mission ? make_mission_program(*spec.mission) : nullptr};
     return std::make_unique<physics::WorldNode>(
         spec.world, spec.events, spec.control.empty() ? nullptr : make_control_socket(spec.control),
-        spec.bluetooth);
+        spec.bluetooth, std::move(tracker));
 }
 
 std::unique_ptr<cosim::Node> make(const physics::IrSpec& spec, Faults faults) {

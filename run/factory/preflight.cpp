@@ -4,6 +4,11 @@
 #include "linuxboard/shim/node/program_file.h"
 #include "run/factory/node_factory.h"
 
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <filesystem>
 #include <set>
 #include <string>
 
@@ -23,6 +28,13 @@ void check_program(const std::string& node, const std::string& program) {
 }  // namespace
 
 void check_files(const RunSetup& setup) {
+    if (const auto& mission = setup.scenario.mission_program) {
+        const std::string& program = mission->command.front();
+        if (::access(program.c_str(), X_OK) != 0 || std::filesystem::is_directory(program))
+            throw InputError(mission->file, mission->place,
+                             fmt::format("the mission program {} cannot be executed", program),
+                             "a file that may be executed (chmod +x), with its interpreter in line 1");
+    }
     std::set<std::string> known;  // robots of a swarm differ in little else than their names
     for (const PlannedNode& node : setup.nodes) {
         if (const auto* linux = std::get_if<LinuxProgram>(&node.what.kind))

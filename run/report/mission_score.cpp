@@ -19,7 +19,8 @@ nlohmann::ordered_json mission_score(const missions::Mission& mission,
     nlohmann::ordered_json result{{"kind", mission.name},
                                   {"score", nullptr},
                                   {"better", missions::more_is_better(mission.kind) ? "more" : "less"},
-                                  {"steps", 0}};
+                                  {"steps", 0},
+                                  {"step_s", mission.step}};
     physics::Paths paths;
     try {
         paths = physics::read_paths(trajectory);
@@ -49,16 +50,20 @@ nlohmann::ordered_json mission_score(const missions::Mission& mission,
     return result;
 }
 
-std::string mission_summary(const missions::Mission& mission, const std::filesystem::path& trajectory,
-                            double until) {
-    const nlohmann::ordered_json result = mission_score(mission, trajectory, until);
-    const auto steps = result.at("steps").get<std::uint64_t>();
-    if (result.at("score").is_null())
-        return fmt::format("mission {}: no score: {}", mission.name,
-                           result.value("why", steps == 0 ? "no step was counted" : "no robot counts"));
-    return fmt::format("mission {}: score {:.6g} ({} is better), {} steps of {:g} s", mission.name,
-                       result.at("score").get<double>(), result.at("better").get<std::string>(), steps,
-                       mission.step);
+std::string mission_summary(const nlohmann::ordered_json& score) {
+    const auto kind = score.at("kind").get<std::string>();
+    const auto steps = score.at("steps").get<std::uint64_t>();
+    const std::string why = score.value("why", "");
+    if (score.at("score").is_null())
+        return fmt::format("mission {}: no score: {}", kind,
+                           !why.empty() ? why
+                           : steps == 0 ? "no step was counted"
+                                        : "no robot counts");
+    const std::string length =
+        score.contains("step_s") ? fmt::format("{} steps of {:g} s", steps, score.at("step_s").get<double>())
+                                 : fmt::format("{} frames of the tracker", steps);
+    return fmt::format("mission {}: score {:.6g} ({} is better), {}{}", kind, score.at("score").get<double>(),
+                       score.at("better").get<std::string>(), length, why.empty() ? "" : "; " + why);
 }
 
 }  // namespace puckloop::tools

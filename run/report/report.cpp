@@ -131,8 +131,27 @@ std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome
     return warnings;
 }
 
+/// What the run scored: by its table, or as its program counted. Null where neither is.
+ordered_json mission_of(const RunSetup& setup, const cosim::Outcome& outcome) {
+    if (setup.scenario.mission)
+        return mission_score(*setup.scenario.mission, setup.out / "trajectory.csv", end_of(setup.scenario));
+    for (const auto& node : outcome.nodes)
+        if (const ordered_json json = node_json(node); node.name == "world" && json.contains("mission"))
+            return json.at("mission");
+    return nullptr;
+}
+
 void judge(cosim::Outcome& outcome) {
-    if (!outcome.success || outcome.reason != cosim::EndReason::Duration) return;
+    if (!outcome.success) return;
+    for (const auto& node : outcome.nodes) {
+        const ordered_json json = node_json(node);
+        if (!json.contains("mission") || !json["mission"].contains("why")) continue;
+        outcome.success = false;
+        outcome.node = node.name;
+        outcome.text = json["mission"]["why"].get<std::string>();
+        return;
+    }
+    if (outcome.reason != cosim::EndReason::Duration) return;
     for (const auto& node : outcome.nodes) {
         const ordered_json json = node_json(node);
         if (!json.value("never_opened_a_device", false)) continue;
@@ -188,9 +207,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
                         {"events", events_of(nodes)},
                         {"warnings", warnings_of(setup, outcome)},
                         {"unmodelled_registers", unmodelled_of(nodes)}};
-    if (setup.scenario.mission)
-        report["mission"] =
-            mission_score(*setup.scenario.mission, setup.out / "trajectory.csv", end_of(setup.scenario));
+    if (ordered_json mission = mission_of(setup, outcome); !mission.is_null())
+        report["mission"] = std::move(mission);
     if (!expectations.empty()) report["expectations"] = expectations_json(expectations);
     if (!setup.scenario.not_taken.empty()) report["not_taken_over"] = setup.scenario.not_taken;
     if (!setup.from.empty())
@@ -208,9 +226,8 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
     text += states_summary(setup, outcome) + stats_summary(outcome) + faults_summary(outcome) +
             supply_resets_summary(outcome);
-    if (setup.scenario.mission)
-        text += "\n" + mission_summary(*setup.scenario.mission, setup.out / "trajectory.csv",
-                                       end_of(setup.scenario));
+    if (const ordered_json mission = mission_of(setup, outcome); !mission.is_null())
+        text += "\n" + mission_summary(mission);
     const std::vector<std::string> warnings = warnings_of(setup, outcome);
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);

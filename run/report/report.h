@@ -27,7 +27,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
 /// Warnings of the setup, of the run and of its nodes, these with the node's name before them.
 std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome& outcome);
 
-/// A run that lasted as long as it should has failed nevertheless if a program never touched its robot.
+/// A run that lasted as long as it should has failed nevertheless if a program never touched its robot, and
+/// any run whose mission program went wrong at its end.
 void judge(cosim::Outcome& outcome);
 
 /// A run with warnings has failed, where the user asked for it.

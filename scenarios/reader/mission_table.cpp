@@ -37,15 +37,10 @@ missions::Region read_needed(Reader& reader, const char* key) {
     return read_region_of(reader.file(), fmt::format("mission.{}", key), *table);
 }
 
-}  // namespace
-
-std::optional<missions::Mission> read_mission(Reader& top, double period) {
-    const TomlValue* table = top.table("mission");
-    if (!table) return std::nullopt;
-    Reader reader(top.file(), "mission", *table);
+/// A table that counts; its kind has been read.
+missions::Mission read_counted(Reader& reader, const std::string& kind, double period) {
     missions::Mission mission;
-    mission.name =
-        reader.choice("kind", "", {"aggregation", "shelter", "foraging", "coverage", "grid_exploration"});
+    mission.name = kind;
     mission.kind = mission.name == "foraging"           ? missions::Kind::Foraging
                    : mission.name == "coverage"         ? missions::Kind::Coverage
                    : mission.name == "grid_exploration" ? missions::Kind::GridExploration
@@ -78,16 +73,49 @@ std::optional<missions::Mission> read_mission(Reader& top, double period) {
         if (mission.area.disc) reader.fail("area", "a grid of cells is a rectangle", "shape = \"rectangle\"");
     }
     if (aggregation) mission.at_end = reader.flag("at_end", false);
-    reader.finish();
     return mission;
 }
 
-missions::Mission read_mission_of(const std::filesystem::path& file, double period) {
+MissionCommand read_command(Reader& reader) {
+    MissionCommand mission;
+    mission.command = reader.texts("program");
+    if (mission.command.empty() || mission.command.front().empty())
+        reader.fail_missing("program", "program = [\"./mission.py\"]");
+    if (mission.command.front().find('/') != std::string::npos)
+        mission.command.front() = (reader.folder() / mission.command.front()).lexically_normal().string();
+    mission.better = reader.choice("better", mission.better, {"more", "less"});
+    mission.timeout = reader.quantity("timeout", Dimension::Time, mission.timeout);
+    if (!(mission.timeout >= 0.001 && mission.timeout <= 1e6))
+        reader.fail("timeout", "timeout is out of range", "1 ms to 1e6 s, of wall time");
+    return mission;
+}
+
+}  // namespace
+
+void read_mission(Reader& top, double period, Scenario& scenario) {
+    const TomlValue* table = top.table("mission");
+    if (!table) return;
+    Reader reader(top.file(), "mission", *table);
+    const std::string kind = reader.choice(
+        "kind", "", {"aggregation", "shelter", "foraging", "coverage", "grid_exploration", "program"});
+    if (kind == "program") {
+        scenario.mission_program = read_command(reader);
+        scenario.mission_program->file = top.file();
+        scenario.mission_program->place = place_of(*table);
+        scenario.mission.reset();
+    } else {
+        scenario.mission = read_counted(reader, kind, period);
+        scenario.mission_program.reset();
+    }
+    reader.finish();
+}
+
+void read_mission_of(const std::filesystem::path& file, double period, Scenario& scenario) {
     const TomlValue root = read_toml(file);
     Reader top(file.string(), "", root);
-    std::optional<missions::Mission> mission = read_mission(top, period);
-    if (!mission) throw InputError(file.string(), "", "there is no [mission]", "[mission] with its kind");
-    return *std::move(mission);
+    if (!top.has("mission"))
+        throw InputError(file.string(), "", "there is no [mission]", "[mission] with its kind");
+    read_mission(top, period, scenario);
 }
 
 }  // namespace puckloop::scenarios

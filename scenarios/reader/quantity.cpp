@@ -116,4 +116,16 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     throw QuantityError{fmt::format("unknown unit '{}'", unit_name), "one of " + units_of(dimension)};
 }
 
+Dimension dimension_of(std::string_view unit) {
+    if (unit == "m") return Dimension::Length;
+    if (unit == "rad") return Dimension::Angle;
+    if (unit == "kg") return Dimension::Mass;
+    if (unit == "s") return Dimension::Time;
+    if (unit == "V") return Dimension::Voltage;
+    if (unit == "N m") return Dimension::Torque;
+    if (unit == "Hz") return Dimension::Frequency;
+    if (unit == "1") return Dimension::Ratio;
+    return Dimension::Number;  // counts, steps and the like: bare numbers
+}
+
 }  // namespace puckloop::scenarios

@@ -12,6 +12,9 @@ enum class Dimension { Time, Length, Angle, Mass, Frequency, Voltage, Force, Tor
 /// "a time, such as \"20 ms\"": for error messages.
 std::string_view example_of(Dimension dimension);
 
+/// Of a unit's name: "m", "rad", "kg", "s", "V", "N m", "Hz" or "1"; others are bare numbers.
+Dimension dimension_of(std::string_view unit);
+
 /// Thrown with the reason only; the caller knows file and line.
 struct QuantityError {
     std::string problem;

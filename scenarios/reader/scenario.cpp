@@ -13,6 +13,7 @@
 #include "scenarios/reader/events/event_tables.h"
 #include "scenarios/reader/expect_tables.h"
 #include "scenarios/reader/faults/fault_tables.h"
+#include "scenarios/reader/field_table.h"
 #include "scenarios/reader/mission_table.h"
 #include "scenarios/reader/radio_tables.h"
 #include "scenarios/reader/robot_tables.h"
@@ -90,11 +91,15 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
         read_tam(name, *table, scenario);
     for (const TomlValue* table : top.tables("group"))
         read_group(name, *table, scenario);
-    scenario.mission = read_mission(top, period);
+    read_mission(top, period, scenario);
     if (!settings.mission.empty()) {
-        scenario.mission = read_mission_of(settings.mission, period);
+        read_mission_of(settings.mission, period, scenario);
         scenario.files.push_back(settings.mission);
     }
+    if (const TomlValue* table = top.table("tracker"))
+        read_fields(Reader(name, "tracker", *table), scenario.tracker.emplace());
+    else if (scenario.mission_program)
+        scenario.tracker.emplace();
     scenario.radio = read_radio(top);
     scenario.coordinator = read_coordinator(top);
     read_bluetooth(top, scenario);
@@ -123,7 +128,7 @@ void check_ending(const Scenario& scenario) {
     const bool any_program =
         std::any_of(scenario.robots.begin(), scenario.robots.end(),
                     [](const RobotBoards& robot) { return robot.linux_board.has_value(); }) ||
-        (scenario.coordinator && scenario.coordinator->program);
+        (scenario.coordinator && scenario.coordinator->program) || scenario.mission_program;
     if (!scenario.duration && !any_program)
         throw InputError(scenario.file.string(), "[run]", "nothing ends this run",
                          "duration = \"60 s\", a robot with a [robot.linux] program, or --duration");

@@ -8,6 +8,7 @@
 #include "emu/tam_avr/tam_spec.h"
 #include "missions/mission.h"
 #include "physics/events/event.h"
+#include "physics/tracker/tracker_spec.h"
 #include "scenarios/reader/expectation.h"
 
 #include <cstdint>
@@ -177,6 +178,14 @@ struct CanBus {
     std::vector<CanController> controllers;
 };
 
+/// A program that judges the run by what the tracker sees ([mission] with kind = "program").
+struct MissionCommand {
+    std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
+    std::string better = "more";       ///< or "less"
+    double timeout = 10.0;             ///< s of wall time that an answer may take
+    std::string file, place{};         ///< of its table
+};
+
 struct Scenario {
     std::filesystem::path file;
     std::string name;                ///< the file's stem
@@ -196,6 +205,8 @@ struct Scenario {
     std::optional<CoordinatorPlace> coordinator{};
     std::vector<CanBus> can_buses{};
     std::optional<missions::Mission> mission{};
+    std::optional<MissionCommand> mission_program{};  ///< in place of `mission`
+    std::optional<physics::TrackerSpec> tracker{};    ///< there whenever a mission program is
     std::vector<cosim::FaultSpec> faults;
     std::vector<Expectation> expectations{};
     std::vector<std::string> allow{};      ///< failures that do not fail the run (allowed_failures.h)

@@ -50,18 +50,6 @@ physics::Arena read_arena(Reader& top) {
     return arena;
 }
 
-Dimension dimension_of(std::string_view unit) {
-    if (unit == "m") return Dimension::Length;
-    if (unit == "rad") return Dimension::Angle;
-    if (unit == "kg") return Dimension::Mass;
-    if (unit == "s") return Dimension::Time;
-    if (unit == "V") return Dimension::Voltage;
-    if (unit == "N m") return Dimension::Torque;
-    if (unit == "Hz") return Dimension::Frequency;
-    if (unit == "1") return Dimension::Ratio;
-    return Dimension::Number;  // counts, steps and the like: bare numbers
-}
-
 void read_parameter_level(const std::string& file, const std::string& where, const std::string& prefix,
                           const TomlValue& table, std::map<std::string, double>& result) {
     Reader reader(file, where, table);

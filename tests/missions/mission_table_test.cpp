@@ -107,13 +107,13 @@ TEST_CASE("a run is scored by its trajectory, from the mission's beginning, step
     CHECK(score.at("score") == 3.0);
     CHECK(score.at("steps") == 2);
     CHECK(score.at("better") == "more");
-    CHECK(tools::mission_summary(mission, file.path()) ==
+    CHECK(tools::mission_summary(tools::mission_score(mission, file.path())) ==
           "mission aggregation: score 3 (more is better), 2 steps of 0.1 s");
     mission.begin = 0.1;
     CHECK(tools::mission_score(mission, file.path()).at("score") == 2.0);
     CHECK(tools::mission_score(mission, "/nowhere/trajectory.csv").at("score").is_null());
     mission.begin = 5.0;
     CHECK(tools::mission_score(mission, file.path()).at("score").is_null());
-    CHECK(tools::mission_summary(mission, file.path()) ==
+    CHECK(tools::mission_summary(tools::mission_score(mission, file.path())) ==
           "mission aggregation: no score: no step was counted");
 }

@@ -92,8 +92,8 @@ inline World random_world(RandomStream& chance, int robots) {
 
 /// Something that hands may do; it may well be refused.
 inline Action random_action(RandomStream& chance, const World& world) {
-    constexpr Verb kVerbs[] = {Verb::Move,      Verb::Remove,   Verb::Lift, Verb::Put,
-                               Verb::SwitchOff, Verb::SwitchOn, Verb::Set,  Verb::Move};
+    constexpr Verb kVerbs[] = {Verb::Move,     Verb::Remove, Verb::Lift, Verb::Put,  Verb::SwitchOff,
+                               Verb::SwitchOn, Verb::Set,    Verb::Move, Verb::Unset};
     std::vector<std::string> names{std::string(kFloor), std::string(kRoomLight)};
     const auto note = [&](const auto& things) {
         for (const auto& thing : things)
@@ -115,7 +115,8 @@ inline Action random_action(RandomStream& chance, const World& world) {
         if (action.verb == Verb::Move && chance.below(2) == 0) action.over = between(chance, .01, .1);
     }
     if (action.verb == Verb::Set) {
-        constexpr const char* kProperties[] = {"grey", "ambient", "intensity", "reflectivity", "charge"};
+        constexpr const char* kProperties[] = {"grey",         "ambient", "intensity",
+                                               "reflectivity", "charge",  "ground"};
         action.property = kProperties[chance.below(std::size(kProperties))];
         if (chance.below(2) == 0) {
             action.object = kRoomLight;

@@ -11,7 +11,7 @@ using enum ValueForm;
 // clang-format off
 constexpr ActionKey kMove[]{{"to", List}, {"by", List}, {"heading"}, {"over"}};
 constexpr ActionKey kPut[]{{"to", List}, {"heading"}};
-constexpr ActionKey kSet[]{{"grey"}, {"ambient"}, {"intensity"}, {"level"}, {"reflectivity"}, {"charge"}};
+constexpr ActionKey kSet[]{{"grey"}, {"ambient"}, {"intensity"}, {"level"}, {"reflectivity"}, {"charge"}, {"ground"}};
 constexpr ActionKey kSelect[]{{"position", Integer}};
 constexpr ActionKey kRemote[]{{"key", Integer}, {"address", Integer}, {"hold"}};
 
@@ -23,14 +23,16 @@ constexpr ActionForm kForms[]{
     {"remove", "remove OBJECT", "takes a thing away", {}},
     {"lift", "lift ROBOT", "holds a robot in the air: wheels turn freely, nothing is under it", {}},
     {"put", "put ROBOT [to X, Y] [heading ANGLE]", "puts a lifted robot down", kPut},
-    {"set", "set OBJECT|floor|light grey|ambient|intensity|level|reflectivity|charge VALUE",
-     "changes a lamp, a speaker, a patch, a body, a battery, the floor or the room's light", kSet},
+    {"set", "set OBJECT|floor|light grey|ambient|intensity|level|reflectivity|charge|ground VALUE",
+     "changes a lamp, a speaker, a patch, a body, a battery, the floor or the room's light; a robot's ground: what\n"
+     "its ground sensors see in place of the floor", kSet},
     {"switch_off", "switch_off OBJECT", "a lamp or a speaker", {}},
     {"switch_on", "switch_on OBJECT", "as bright or loud as it was", {}},
     {"select", "select ROBOT position 0..15", "turns a robot's selector", kSelect},
     {"reset", "reset ROBOT", "presses a robot's reset button", {}},
     {"remote", "remote ROBOT|all key 0..63 [address 0..31] [hold TIME]",
      "presses a key of an RC5 remote control", kRemote},
+    {"unset", "unset ROBOT", "its ground sensors see the floor again", {}},
 };
 
 constexpr ActionKey kWall[]{{"name"}, {"from", List}, {"to", List}, {"thickness"}, {"height"}, {"reflectivity"}};

@@ -134,6 +134,7 @@ Action read_action(Reader& reader, const TomlValue& table, int line) {
     case Verb::SwitchOff:
     case Verb::SwitchOn:
     case Verb::Reset:
+    case Verb::Unset:
         break;
     }
     action.command = command_text(table);

@@ -115,6 +115,36 @@ TEST_CASE("things glide evenly, push what is in their way, and arrive") {
     CHECK(stage.model.state(0).x > -0.045 + 0.036);
 }
 
+TEST_CASE("a robot's ground sensors see a grey that is not there, for itself alone, until they see the floor "
+          "again") {
+    World world = room();
+    world.robots.push_back(robot_at("e2", 0.0, 0.3, 0.0));
+    Stage stage(world);
+    stage.driver.drive(0, 0, 0.2);
+    const double floor = stage.channel(kGroundChannel);
+    const double floor_of_other = stage.model.robot(1).channels()[kGroundChannel];
+    CHECK(stage.act(action(Verb::Unset, "e1")) ==
+          "'e1' sees the floor as it is (expected set e1 ground GREY before)");
+    Action set = action(Verb::Set, "e1");
+    set.property = "ground";
+    set.value = 0.0;
+    REQUIRE(stage.act(set).empty());
+    stage.driver.drive(300, 300, 0.2);  // wherever it drives
+    CHECK(stage.channel(kGroundChannel) < 0.6 * floor);
+    CHECK(stage.model.robot(1).channels()[kGroundChannel] == Approx(floor_of_other).epsilon(0.05));
+    // As over black paper: the sensors' own law.
+    World black = room();
+    black.arena.floor_grey = 0.0;
+    Stage over_black(black);
+    over_black.driver.drive(0, 0, 0.2);
+    CHECK(stage.channel(kGroundChannel) == Approx(over_black.channel(kGroundChannel)).epsilon(0.05));
+    set.value = 1.5;
+    CHECK(stage.act(set) == "ground = 1.5 is out of range (expected 0 to 1)");
+    REQUIRE(stage.act(action(Verb::Unset, "e1")).empty());
+    stage.driver.drive(0, 0, 0.2);
+    CHECK(stage.channel(kGroundChannel) == Approx(floor).epsilon(0.05));
+}
+
 TEST_CASE("a lifted robot hangs still, its wheels turn, nothing is under or around it") {
     World world = room();
     world.robots.push_back(robot_at("e2", 0.0, 0.09, 0.0));

@@ -80,15 +80,17 @@ ordered_json report_schema() {
     p["events"] = ordered_json{{"description", "what happened to the world"}};
     p["warnings"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
     p["unmodelled_registers"] = of("array", "registers without a model that firmware touched");
-    p["mission"] = {{"type", "object"},
-                    {"description", "score of the run by the scenario's [mission] (docs/swarm.md)"},
-                    {"properties",
-                     {{"kind", of("string", "aggregation, shelter, foraging, coverage or grid_exploration")},
-                      {"score", or_null("number", "null: no step was counted, or no robot")},
-                      {"better", {{"enum", {"more", "less"}}}},
-                      {"steps", of("integer", "that were counted")},
-                      {"why", of("string", "where there is no score")}}},
-                    {"required", {"kind", "score", "better", "steps"}}};
+    p["mission"] = {
+        {"type", "object"},
+        {"description", "score of the run by the scenario's [mission] (docs/swarm.md)"},
+        {"properties",
+         {{"kind", of("string", "aggregation, shelter, foraging, coverage, grid_exploration or program")},
+          {"score", or_null("number", "null: no step was counted, or no robot")},
+          {"better", {{"enum", {"more", "less"}}}},
+          {"steps", of("integer", "that were counted; of a program: frames that it was told")},
+          {"step_s", of("number", "length of a step; not of a program")},
+          {"why", of("string", "why there is no score, or what the program did wrong")}}},
+        {"required", {"kind", "score", "better", "steps"}}};
     p["from"] = of("object", "the snapshot that the run went on from");
     p["cache_unused"] = of("string", "why no boot was taken from the cache");
     schema["required"] = {"format",       "puckloop", "command_line", "scenario", "files",       "seed",

@@ -1,10 +1,15 @@
+#include "base/fields/field.h"
 #include "cosim/faults/kinds/kind_table.h"
+#include "physics/tracker/tracker_spec.h"
 #include "scenarios/reader/events/action_forms.h"
 #include "tools/guide/schema/schema_kit.h"
 #include "tools/guide/schema/schemas.h"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -115,7 +120,10 @@ constexpr SchemaKey kPlace[]{
     {"headings", "any", "of a list"}, {"heading", "text", "an angle, a distribution, or in or out on a ring"},
     {"max_trials", "integer", "until a unit that finds no room is an error; default 1000"}, {"gap", "length", "kept between units"}};
 constexpr SchemaKey kMission[]{
-    {"kind", "text", "aggregation, shelter, foraging, coverage or grid_exploration"},
+    {"kind", "text", "aggregation, shelter, foraging, coverage, grid_exploration or program"},
+    {"program", "texts", "program: path and arguments"},
+    {"better", "text", "program: more (default) or less of the score"},
+    {"timeout", "time", "program: wall time for an answer; default 10 s"},
     {"begin", "time", "steps count from here on; default 0"}, {"step", "time", "default 100 ms"},
     {"at_end", "flag", "aggregation, shelter: the share of robots at the end"},
     {"cells", "integer", "grid_exploration: rows and columns; default 10"}};
@@ -269,6 +277,25 @@ ordered_json fault_schema() {
     return fault;
 }
 
+namespace {
+
+/// Keys of a struct that lists its fields, all of them numbers with a unit.
+template <Described T>
+ordered_json fields_schema(std::string_view about) {
+    constexpr std::pair<std::string_view, std::string_view> kTypes[]{
+        {"s", "time"}, {"m", "length"}, {"rad", "angle"}, {"Hz", "frequency"}, {"1", "ratio"}};
+    ordered_json table = table_schema(about, {});
+    for_each_entry<T>([&](const auto& one) {
+        const auto* type = std::find_if(std::begin(kTypes), std::end(kTypes),
+                                        [&](const auto& known) { return known.first == one.unit; });
+        const SchemaKey key{one.key, type == std::end(kTypes) ? "number" : type->second, one.about};
+        add_keys(table, std::span(&key, 1));
+    });
+    return table;
+}
+
+}  // namespace
+
 ordered_json scenario_schema() {
     ordered_json schema = schema_head("scenario", "a puckloop scenario (docs/scenario.md)");
     schema.update(table_schema("world, robots, TAMs, faults and events of a run", {}));
@@ -294,6 +321,7 @@ ordered_json scenario_schema() {
     mission["properties"]["nest"] = table_schema("foraging: where items go", kRegion);
     mission["properties"]["area"] = table_schema("coverage, grid_exploration: what is covered", kRegion);
     properties["mission"] = std::move(mission);
+    properties["tracker"] = fields_schema<physics::TrackerSpec>("cameras above the arena (docs/missions.md)");
     properties["can_bus"] = list_schema(table_schema("wires between CAN modules", kCan, {"controllers"}));
     properties["ircom"] = table_schema("words by the light of proximity sensors", kIrcom);
     properties["fault"] = list_schema(fault_schema());
