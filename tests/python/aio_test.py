@@ -100,6 +100,14 @@ class Unreachable(InFolder):
         with self.assertRaisesRegex(puckloop.StartError, "the run is over"):
             asyncio.run(aio.attach(self.folder))
 
+    def test_a_control_file_that_is_not_written_to_its_end(self):
+        note = self.file("control.json", "")
+        with self.assertRaisesRegex(puckloop.StartError, "did not listen for 5 s"):
+            puckloop.attach(self.folder)
+        threading.Timer(0.3, note.write_text, ['{"ended": true}']).start()
+        with self.assertRaisesRegex(puckloop.StartError, "the run is over"):
+            puckloop.attach(self.folder)
+
     def test_a_socket_that_nobody_serves(self):
         path = str(self.folder / "control")
         self.file("control.json", json.dumps({"control": path}))

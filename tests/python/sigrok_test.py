@@ -1,17 +1,57 @@
 """The decoders of clients/sigrok in sigrok-cli, on exports of shipped scenarios, against `trace decode`."""
 
+import os
+import pathlib
+import struct
 import time
 import unittest
 
 from foreign import Exported
-from kit import SOURCE
+from kit import SOURCE, puckloop
+
+BIT = 1 / 115200  # s
+TICK = 1e-7  # s, of the files that are made here
+
+ROOM = """
+[run]
+duration = "{seconds} s"
+
+[arena]
+size = ["1 m", "1 m"]
+
+[[robot]]
+name = "robot0"
+position = ["0 m", "0 m"]
+[robot.pic]
+firmware = "{image}"
+uart1 = "script:ask.txt"
+"""
+
+
+def vcd_of(**lines):
+    """Two or more UART lines as VCD: of each (begin in s, bytes)."""
+    marks = {name: chr(33 + place) for place, name in enumerate(lines)}
+    changes = []
+    for name, sent in lines.items():
+        for begin, data in sent:
+            for place, byte in enumerate(data):
+                levels = [0, *[byte >> bit & 1 for bit in range(8)], 1]
+                start = begin + 10 * place * BIT
+                changes += [(round((start + bit * BIT) / TICK), level, marks[name])
+                            for bit, level in enumerate(levels)]
+    head = ["$timescale 100 ns $end", "$scope module lines $end",
+            *[f"$var wire 1 {mark} {name} $end" for name, mark in marks.items()], "$upscope $end",
+            "$enddefinitions $end", "#0", *[f"1{mark}" for mark in marks.values()]]
+    body = [f"#{at}\n{level}{mark}" for at, level, mark in sorted(changes)]
+    return "\n".join([*head, *body, f"#{max(at for at, _, _ in changes) + 10000}", ""])
 
 
 class Sigrok(Exported):
     tool = "sigrok-cli"
 
     def annotations(self, file, decoders, shown):
-        out = self.succeeds(self.called("-i", file, "-P", decoders, "-A", shown,
+        form = ["-I", "vcd"] if file.suffix == ".vcd" else []
+        out = self.succeeds(self.called(*form, "-i", file, "-P", decoders, "-A", shown,
                                         SIGROKDECODE_DIR=str(SOURCE / "clients" / "sigrok")))
         return [line.split(": ", 1)[1] for line in out.splitlines()]
 
@@ -80,6 +120,47 @@ class Sigrok(Exported):
         # Without escapes the numbers that have some do not fit.
         self.assertTrue(any("check" in text or "length" in text for text in self.annotations(
             file, f"{lines},xbee_api:mode=1", "xbee_api=rx-wrong:tx-wrong")))
+
+    BTCOM = "uart:rx={}:tx={}:baudrate=115200,epuck_btcom"
+
+    def test_btcom_made_here(self):
+        picture = bytes([0, 4, 2]) + bytes(range(8))
+        file = self.file("btcom.vcd", vcd_of(
+            host=[(0.001, b"\r\nv\rd,300,-300\r"), (0.01, bytes([0xB2, 0xBC, 0x2C, 1, 0xD4, 0xFE, 0xB4, 9, 1, 0])),
+                  (0.02, bytes([0xB7, 0xAB, 0])), (0.12, b"Y\nB\n"), (0.13, bytes([0x90]))],
+            robot=[(0.005, b"v,Version 9\r\nd\r\n"), (0.012, struct.pack("<8h", *range(-4, 4))),
+                   (0.023, struct.pack("<300h", *range(300)) + picture + b"\x07"), (0.124, b"z,Command not found\r\n"),
+                   (0.128, b"\x0c\x07WELCOME\r\n")]))
+        lines = self.BTCOM.format("host", "robot")
+        self.assertEqual(self.annotations(file, lines, "epuck_btcom=command"), [
+            "V version", "D set speed 300 -300", "binary N proximity", "binary D set speed 300 -300",
+            "binary L front LED 9 1", "end of the sequence", "binary I camera parameters", "binary U microphones",
+            "end of the sequence", "B body LED"])
+        self.assertEqual(self.annotations(file, lines, "epuck_btcom=reply:text"), [
+            "v,Version 9", "d", "proximity -4 -3 -2 -1 0 1 2 3", "microphones 0 1 2 3 4 5 6 7 8 9 10 11 ...",
+            "camera mode 0 4x2", "microphones index 7", "\\x0c\\x07WELCOME"])
+        self.assertEqual(self.annotations(file, lines, "epuck_btcom=wrong"), [
+            "Y: there is no such command", "B: 0 parameters, and B has 1", "z,Command not found",
+            "binary 90: there is no such command"])
+
+    def test_btcom_of_its_image(self):
+        image = pathlib.Path(os.environ.get("PUCKLOOP_IMAGES", "/nonexistent")) / "BTcom_default.hex"
+        if not image.is_file():
+            self.skipTest("PUCKLOOP_IMAGES has no BTcom_default.hex")
+        self.file("ask.txt", "8 56 0d\n8.5 44 2c 33 30 30 2c 2d 33 30 30 0d\n9 b2 af 00\n9.3 59 0d\n")
+        out = self.folder / "out"
+        self.succeeds(puckloop("run", self.file("room.toml", ROOM.format(seconds=10, image=image)), "--in-process",
+                               "--out", out))
+        file = self.export(out, "sr")
+        lines = self.BTCOM.format("robot0.uart1/robot0.uart1", "robot0.uart1/robot0.pic")
+        self.assertEqual(self.annotations(file, lines, "epuck_btcom=command"), [
+            "V version", "D set speed 300 -300", "binary N proximity", "binary Q steps", "end of the sequence"])
+        replies = self.annotations(file, lines, "epuck_btcom=reply")
+        self.assertEqual(replies[:2], ["v,Version 1.1.4 December 2006", "d"])
+        self.assertRegex(replies[2], r"^proximity (\d+ ){7}\d+$")
+        self.assertRegex(replies[3], r"^steps 1\d\d -1\d\d$")  # 303 steps/s for half a second
+        self.assertEqual(self.annotations(file, lines, "epuck_btcom=wrong"),
+                         ["Y: there is no such command", "z,Command not found"])
 
     def test_a_vcd_opens_quickly(self):
         out = self.run_of("hello", "--duration", "10 s")

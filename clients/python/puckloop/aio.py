@@ -160,7 +160,7 @@ class Run:
     @staticmethod
     async def _connect(launched: Launched | Found) -> Line:
         begun = time.monotonic()
-        while time.monotonic() - begun < launch.START_SECONDS:
+        while time.monotonic() - begun < launched.patience:
             path = launched.socket()
             if path is not None:
                 try:
@@ -169,7 +169,7 @@ class Run:
                     if isinstance(launched, Found):
                         raise  # else not yet
             await asyncio.sleep(launch.POLL_SECONDS)
-        raise StartError(f"the run did not listen for {launch.START_SECONDS:g} s")
+        raise StartError(f"the run did not listen for {launched.patience:g} s")
 
     # What it is.
     @property

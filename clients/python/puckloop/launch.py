@@ -68,6 +68,8 @@ def of_snapshot(file: str | os.PathLike[str], *, out: str | os.PathLike[str] | N
 class Launched:
     """A process that runs a plan. StartError: the program is not there."""
 
+    patience = START_SECONDS
+
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self._temporary = tempfile.TemporaryDirectory(prefix="puckloop-") if plan.out is None else None
@@ -133,21 +135,22 @@ class Launched:
 class Found:
     """A run that somebody else began with --control. StartError: there is none in this results folder."""
 
+    patience = 5.0  #: seconds of wall time, until control.json is written to its end
+
     def __init__(self, results: str | os.PathLike[str]) -> None:
         self.results = pathlib.Path(results).absolute()
         self.command: list[str] = []
         if not (self.results / "control.json").is_file():
             raise StartError(f"{self.results}: no run with --control has these results (there is no control.json)")
 
-    def socket(self) -> str:
-        """Where it listens. StartError: it is over."""
-        path = _control(self.results).get("control")
-        if path is None:
+    def socket(self) -> str | None:
+        """Where it listens; None: not yet. StartError: it is over."""
+        if self.gone():
             raise StartError(f"{self.results}: the run is over")
-        return path
+        return _control(self.results).get("control")
 
     def gone(self) -> bool:
-        return "control" not in _control(self.results)
+        return bool(_control(self.results).get("ended"))
 
     def kill(self) -> None:
         """Not our process."""
@@ -159,7 +162,7 @@ class Found:
         """Not our folder."""
 
 
-def _control(results: pathlib.Path) -> dict[str, str]:
+def _control(results: pathlib.Path) -> dict[str, Any]:
     try:
         note = json.loads((results / "control.json").read_text())
     except (OSError, ValueError):  # not yet written, or not to its end

@@ -118,7 +118,7 @@ class Run:
 
     def _connect(self) -> Line:
         begun = time.monotonic()
-        while time.monotonic() - begun < launch.START_SECONDS:
+        while time.monotonic() - begun < self._launched.patience:
             path = self._launched.socket()
             if path is not None:
                 try:
@@ -127,7 +127,7 @@ class Run:
                     if isinstance(self._launched, Found):
                         raise  # else not yet
             time.sleep(launch.POLL_SECONDS)
-        raise StartError(f"the run did not listen for {launch.START_SECONDS:g} s")
+        raise StartError(f"the run did not listen for {self._launched.patience:g} s")
 
     # What it is.
     @property
