@@ -119,9 +119,15 @@ class Client(InFolder):
         with puckloop.from_snapshot(snapshot, out=self.folder / "b") as run:
             self.assertEqual(run.time_ps, 400_000_000_000)
             run.capture(link="robot0.uart", sender="robot0.pic")
+            run.step(to="450 ms")
+            with self.assertRaisesRegex(puckloop.StartError, "there is no link 'robot0.uatr'"):
+                run.fault("drop link=robot0.uatr from=robot0.pic begin=500ms")
             run.fault("drop link=robot0.uart from=robot0.pic begin=500ms")
             run.step(to="800 ms")
-            late = [frame for frame in run.frames() if frame.time_s > 0.51]
+            frames = run.frames()
+            self.assertTrue(any(frame.time_s < 0.45 for frame in frames))  # from before the fault
+            late = [frame for frame in frames if frame.time_s > 0.51]
+            self.assertTrue(late)
             self.assertTrue(all(frame.fault == "drop" for frame in late), late[:1])
             self.assertTrue(run.end().report["faults"])
 

@@ -25,7 +25,7 @@ import time
 from typing import Any, Mapping, Sequence, TypeVar
 
 from . import launch, session
-from .errors import NobodyServes, ProtocolError, PuckloopError, RequestError, RunEnded, StartError
+from .errors import NobodyServes, PuckloopError, RequestError, RunEnded, StartError
 from .launch import Found, Launched
 from .line import HAS_ENDED, Wire
 from .records import Ended, Frame, Register, Stepped, Value
@@ -302,14 +302,12 @@ class Run:
             raise RequestError("faults are for runs that this program began: give this one --fault when it is started")
         with tempfile.TemporaryDirectory(prefix="puckloop-") as folder:
             snapshot = await self.save(pathlib.Path(folder) / "run.snapshot")
+            await (await Run._begin(Launched(launched.after(snapshot, faults, pathlib.Path(folder) / "copy")))).close()
+            await self._do(self._session.keep_frames())
             self._line.close()
             await self._gone()
-            try:
-                after = Launched(launched.after(snapshot, faults))
-                other = await Run._begin(after)
-            except (StartError, ProtocolError) as error:
-                self._session.ended = Ended(False, str(error), {})
-                raise
+            after = Launched(launched.after(snapshot, faults, self.results))
+            other = await Run._begin(after)
         self._launched = after.inherit(launched)
         self._line = other._line
         await self._do(self._session.capture_again())

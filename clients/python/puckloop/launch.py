@@ -121,9 +121,9 @@ class Launched:
         if self._temporary:
             self._temporary.cleanup()
 
-    def after(self, snapshot: pathlib.Path, faults: Sequence[str]) -> Plan:
-        """Goes on from there in the same results folder, with faults besides."""
-        return of_snapshot(snapshot, out=self.results, faults=[*self.plan.faults, *faults], duration=None,
+    def after(self, snapshot: pathlib.Path, faults: Sequence[str], out: pathlib.Path) -> Plan:
+        """Goes on from there, with faults besides."""
+        return of_snapshot(snapshot, out=out, faults=[*self.plan.faults, *faults], duration=None,
                            in_process=self.plan.in_process)
 
     def inherit(self, before: Launched) -> Launched:

@@ -10,7 +10,7 @@ import time
 from typing import Any, Mapping, Sequence, TypeVar
 
 from . import launch, session
-from .errors import NobodyServes, ProtocolError, PuckloopError, RequestError, RunEnded, StartError
+from .errors import NobodyServes, PuckloopError, RequestError, RunEnded, StartError
 from .launch import Found, Launched
 from .line import Line
 from .records import Ended, Frame, Register, Stepped, Value
@@ -285,21 +285,19 @@ class Run:
 
     def fault(self, *faults: str) -> None:
         """Goes on with these faults besides (as --fault, beginning later than now): the run is saved and gone on
-        with from there, in a process of its own and the same results folder. StartError: a fault was refused; the
-        run is over then."""
+        with from there, in a process of its own and the same results folder. StartError: a fault was refused, which
+        is found out by a copy; the run is as before."""
         launched = self._launched
         if isinstance(launched, Found):
             raise RequestError("faults are for runs that this program began: give this one --fault when it is started")
         with tempfile.TemporaryDirectory(prefix="puckloop-") as folder:
             snapshot = self.save(pathlib.Path(folder) / "run.snapshot")
+            Run(Launched(launched.after(snapshot, faults, pathlib.Path(folder) / "copy"))).close()
+            self._do(self._session.keep_frames())
             self._line.close()
             self._gone()
-            try:
-                after = Launched(launched.after(snapshot, faults))
-                other = Run(after)
-            except (StartError, ProtocolError) as error:
-                self._session.ended = Ended(False, str(error), {})
-                raise
+            after = Launched(launched.after(snapshot, faults, self.results))
+            other = Run(after)
         self._launched = after.inherit(launched)
         self._line = other._line
         self._do(self._session.capture_again())

@@ -43,6 +43,7 @@ class Session:
         self.ended: Ended | None = None
         self.captures: list[dict[str, str]] = []
         self.texts: list[Text] = []
+        self._kept: list[Frame] = []
 
     @property
     def time_s(self) -> float:
@@ -82,7 +83,13 @@ class Session:
 
     def frames(self) -> Operation[list[Frame]]:
         reply = yield "frames", {}
-        return [Frame.of(row) for row in reply["frames"]]
+        kept, self._kept = self._kept, []
+        return kept + [Frame.of(row) for row in reply["frames"]]
+
+    def keep_frames(self) -> Operation[None]:
+        """Those of a run that goes on in another process: for the next frames()."""
+        if self.captures:
+            self._kept = yield from self.frames()
 
     def act(self, command: str) -> Operation[None]:
         yield "act", {"command": command}

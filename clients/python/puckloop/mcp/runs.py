@@ -149,11 +149,6 @@ class Runs:
     def _time(duration: str | None) -> float | None:
         return None if duration is None else picoseconds("duration", duration) / 1e12
 
-    @staticmethod
-    def try_fault(snapshot: pathlib.Path, results: pathlib.Path, faults: Sequence[str]) -> None:
-        """StartError: a run from there does not begin with these faults."""
-        from_snapshot(snapshot, out=results, faults=faults).close()
-
     def named(self, name: str) -> Kept:
         """Refused: there is none."""
         with self._names:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import pathlib
-import tempfile
 from typing import Any, Callable, Mapping
 
 from ..errors import RunEnded
@@ -265,16 +264,11 @@ class Toolbox:
             kept.run.act(it["command"])
             return {"time_s": kept.run.time_s, "done": "with the next step, which reports it in acts"}
 
-    def _fault(self, it: Arguments, call: Call) -> Result:
+    def _fault(self, it: Arguments, _: Call) -> Result:
         kept = self._runs.named(it["run"])
         (fault,) = self._runs.check_faults([it["fault"]])
         with kept.turn:
             kept.drain()
-            # A refused fault would end the run: it is tried on a run of its own first.
-            with tempfile.TemporaryDirectory(prefix="puckloop-") as folder:
-                snapshot = kept.run.save(pathlib.Path(folder) / "run.snapshot")
-                self._runs.try_fault(snapshot, pathlib.Path(folder) / "results", [*kept.run.faults, fault])
-            call.look()
             kept.run.fault(fault)
             return {"time_s": kept.run.time_s, "faults": kept.run.faults}
 
