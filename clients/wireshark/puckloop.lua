@@ -1,6 +1,7 @@
 -- What puckloop's pcapng files hold beyond what Wireshark knows itself (docs/sigrok.md):
 --   e-puck records   serial packets of a main board (*.pic) and its Linux program: epuck.*
 --   XBee API frames  serial packets of a module (*.xbee) and its host: xbee.*
+--   Bluetooth        serial packets of a main board and its LMX9820A (*.bluetooth): lmx9820.*
 --   registers        I2C transfers of the range-and-bearing board, the ground sensor and the camera: epuck_i2c.*
 --   mesh frames      the network header in 802.15.4 frames of XBee modules: xbee_mesh.*
 --
@@ -376,6 +377,113 @@ local function show_xbee(part, pinfo, tree)
     return text .. (part.notes[1] and " [" .. part.notes[1] .. "]" or "")
 end
 
+-- Bluetooth module (LMX9820A) -----------------------------------------------------------------------------------
+
+local lmx = Proto("lmx9820", "LMX9820A packet")
+local LMX_TYPES = { [0x52] = "REQ", [0x43] = "CFM", [0x69] = "IND", [0x72] = "RSP" }
+local LMX_NAMES = {
+    [0x00] = "GAP_INQUIRY", [0x01] = "GAP_DEVICE_FOUND", [0x02] = "GAP_REMOTE_DEVICE_NAME", [0x03] =
+    "GAP_READ_LOCAL_NAME", [0x04] = "GAP_WRITE_LOCAL_NAME", [0x05] = "GAP_READ_LOCAL_BDA", [0x06] =
+    "GAP_SET_SCANMODE", [0x07] = "SPP_SET_PORT_CONFIG", [0x08] = "SPP_GET_PORT_CONFIG", [0x09] =
+    "SPP_PORT_CONFIG_CHANGED", [0x0A] = "SPP_ESTABLISH_LINK", [0x0B] = "SPP_LINK_ESTABLISHED", [0x0C] =
+    "SPP_INCOMING_LINK_ESTABLISHED", [0x0D] = "SPP_RELEASE_LINK", [0x0E] = "SPP_LINK_RELEASED", [0x0F] =
+    "SPP_SEND_DATA", [0x10] = "SPP_INCOMING_DATA", [0x11] = "SPP_TRANSPARENT_MODE", [0x12] =
+    "SPP_CONNECT_DEFAULT_CON", [0x13] = "SPP_STORE_DEFAULT_CON", [0x14] = "SPP_GET_LIST_DEFAULT_CON", [0x15] =
+    "SPP_DELETE_DEFAULT_CON", [0x16] = "GAP_GET_FIXED_PIN", [0x17] = "GAP_SET_FIXED_PIN", [0x18] =
+    "GAP_GET_SECURITY_MODE", [0x19] = "GAP_SET_SECURITY_MODE", [0x1A] = "RESTORE_FACTORY_SETTINGS", [0x1B] =
+    "GAP_REMOVE_PAIRING", [0x1C] = "GAP_LIST_PAIRED_DEVICES", [0x1D] = "FORCE_MASTER_ROLE", [0x1E] =
+    "SDAP_SERVICE_REQUEST", [0x1F] = "GET_PORTS_TO_OPEN", [0x20] = "READ_RSSI", [0x21] = "GAP_ENTER_SNIFF_MODE",
+    [0x22] = "SET_PORTS_TO_OPEN", [0x23] = "CHANGE_NVS_UART_SPEED", [0x24] = "TEST_MODE", [0x25] = "READY", [0x26]
+    = "RESET", [0x27] = "CHANGE_LOCAL_BDADDRESS", [0x28] = "STORE_CLASS_OF_DEVICE", [0x29] = "ENABLE_SDP_RECORD",
+    [0x2A] = "DELETE_SDP_RECORDS", [0x2B] = "STORE_SPP_RECORD", [0x2C] = "STORE_DUN_RECORD", [0x2D] =
+    "STORE_FAX_RECORD", [0x2E] = "STORE_OPP_RECORD", [0x2F] = "STORE_FTP_RECORD", [0x30] = "STORE_SYNC_RECORD",
+    [0x32] = "SDAP_CONNECT", [0x33] = "SDAP_DISCONNECT", [0x34] = "SDAP_CONNECTION_LOST", [0x35] =
+    "SDAP_SERVICE_BROWSE", [0x36] = "SDAP_SERVICE_SEARCH", [0x37] = "GAP_EXIT_SNIFF_MODE", [0x38] =
+    "GAP_ENTER_PARK_MODE", [0x39] = "GAP_EXIT_PARK_MODE", [0x3A] = "GAP_ENTER_HOLD_MODE", [0x3B] =
+    "GAP_SET_LINK_POLICY", [0x3C] = "GAP_GET_LINK_POLICY", [0x3D] = "GAP_POWER_SAVE_MODE_CHANGED", [0x3E] =
+    "SPP_PORT_STATUS_CHANGED", [0x3F] = "SDAP_ATTRIBUTE_REQUEST", [0x40] = "SPP_GET_PORT_STATUS", [0x41] =
+    "SPP_PORT_SET_DTR", [0x42] = "SPP_PORT_SET_RTS", [0x43] = "SPP_PORT_BREAK", [0x44] = "SPP_PORT_OVERRUN_ERROR",
+    [0x45] = "SPP_PORT_PARITY_ERROR", [0x46] = "SPP_PORT_FRAMING_ERROR", [0x47] = "FIRMWARE_UPGRADE", [0x48] =
+    "CHANGE_UART_SETTINGS", [0x49] = "READ_OPERATION_MODE", [0x4A] = "WRITE_OPERATION_MODE", [0x4B] =
+    "RF_TEST_MODE", [0x4C] = "SET_DEFAULT_LINK_POLICY", [0x4D] = "GET_DEFAULT_LINK_POLICY", [0x4E] =
+    "SET_EVENT_FILTER", [0x4F] = "GET_EVENT_FILTER", [0x50] = "GAP_ACL_ESTABLISHED", [0x51] =
+    "GAP_ACL_TERMINATED", [0x52] = "DISABLE_TL", [0x53] = "TL_ENABLED", [0x55] = "SET_DEFAULT_LINK_TIMEOUT",
+    [0x56] = "GET_DEFAULT_LINK_TIMEOUT", [0x57] = "SPP_SET_LINK_TIMEOUT", [0x58] = "SPP_GET_LINK_TIMEOUT"
+}
+local MOST_LMX = 333 -- bytes of data
+local lmx_fields = {
+    type = ProtoField.uint8("lmx9820.type", "Type", base.HEX, LMX_TYPES),
+    opcode = ProtoField.uint8("lmx9820.opcode", "Opcode", base.HEX, LMX_NAMES),
+    length = ProtoField.uint16("lmx9820.length", "Length of the data"),
+    status = ProtoField.uint8("lmx9820.status", "Status", base.HEX),
+    data = ProtoField.bytes("lmx9820.data", "Data"),
+}
+lmx.fields = lmx_fields
+local lmx_wrong = ProtoExpert.new("lmx9820.wrong", "LMX9820A packet", expert.group.MALFORMED, expert.severity.ERROR)
+lmx.experts = { lmx_wrong }
+
+-- 02, type, opcode, length of the data (low byte first), sum of the four, data, 03. Bytes between packets are what
+-- passes the module transparently.
+local function take_lmx(line, bytes, packet)
+    local found = {}
+    local function ends(wrong)
+        found[#found + 1] = { protocol = "lmx", bytes = line.data, packets = line.packets, notes = { wrong } }
+        line.data = nil
+    end
+    for i = 1, #bytes do
+        local c = bytes:sub(i, i)
+        if line.data then
+            line.data = line.data .. c
+            local size = #line.data
+            local length = size >= 5 and line.data:byte(4) + 256 * line.data:byte(5) or 0
+            if size == 2 and not LMX_TYPES[c:byte()] then
+                ends("unknown type")
+            elseif size == 5 and length > MOST_LMX then
+                ends(("%d bytes of data"):format(length))
+            elseif size == 6 then
+                local sum = line.data:byte(2) + line.data:byte(3) + line.data:byte(4) + line.data:byte(5)
+                if sum % 256 ~= c:byte() then
+                    ends(("check: %02x, and the head needs %02x"):format(c:byte(), sum % 256))
+                end
+            elseif size > 6 and size == length + 7 then
+                ends(c ~= "\3" and "no 03 at the end" or nil)
+            end
+            if not line.data and c == "\2" and found[#found].notes[1] then
+                line.data, line.packets = c, {}
+            end
+        elseif c == "\2" then
+            line.data, line.packets = c, {}
+        end
+        if line.data and line.packets[#line.packets] ~= packet then
+            line.packets[#line.packets + 1] = packet
+        end
+    end
+    return found
+end
+
+local function show_lmx(part, _, tree)
+    local tvb = bytes_of(part.bytes):tvb("LMX9820A packet")
+    local item = tree:add(lmx, tvb(), "LMX9820A ")
+    if part.notes[1] then
+        item:add_proto_expert_info(lmx_wrong, part.notes[1])
+        return "bluetooth [" .. part.notes[1] .. "]"
+    end
+    item:add(lmx_fields.type, tvb(1, 1))
+    item:add(lmx_fields.opcode, tvb(2, 1))
+    item:add_le(lmx_fields.length, tvb(3, 2))
+    local name = LMX_NAMES[part.bytes:byte(3)] or ("0x%02x"):format(part.bytes:byte(3))
+    local text = LMX_TYPES[part.bytes:byte(2)] .. " " .. name
+    if #part.bytes > 7 then
+        if part.bytes:byte(2) == 0x43 then
+            item:add(lmx_fields.status, tvb(6, 1))
+        end
+        item:add(lmx_fields.data, tvb(6, #part.bytes - 7))
+        text = text .. " " .. hex(part.bytes:sub(7, -2))
+    end
+    item:append_text(text)
+    return text
+end
+
 -- Registers on I2C buses ----------------------------------------------------------------------------------------
 
 local bus = Proto("epuck_i2c", "e-puck I2C registers")
@@ -523,6 +631,8 @@ local function first_look(encap, interface, tvb, pinfo)
         link.kind = "xbee"
     elseif sender:find("%.pic$") and link_name:find("%.uart$") then
         link.kind = "epuck"
+    elseif link_name:find("%.bluetooth$") then
+        link.kind = "lmx"
     elseif not link.kind and sender:find("%.linux$") and link_name:find("%.uart$") then
         link.kind = bytes:byte(1) == 0x7E and "xbee" or "epuck"
     end
@@ -531,6 +641,9 @@ local function first_look(encap, interface, tvb, pinfo)
     elseif link.kind == "xbee" then
         link[sender] = link[sender] or {}
         return take_xbee(link[sender], bytes, note, pinfo.number)
+    elseif link.kind == "lmx" then
+        link[sender] = link[sender] or {}
+        return take_lmx(link[sender], bytes, pinfo.number)
     end
     return {}
 end
@@ -549,6 +662,8 @@ function puckloop.dissector(tvb, pinfo, tree)
             shown[#shown + 1] = show_epuck(part, pinfo, tree)
         elseif part.protocol == "xbee" then
             shown[#shown + 1] = show_xbee(part, pinfo, tree)
+        elseif part.protocol == "lmx" then
+            shown[#shown + 1] = show_lmx(part, pinfo, tree)
         else
             shown[#shown + 1] = show_bus(part, tvb, tree)
         end

@@ -86,6 +86,23 @@ class Wireshark(Exported):
         self.assertEqual([tuple(row) for row in rows],
                          [self.mesh_of(text) for text in expected if " sequence " in text])
 
+    def test_bluetooth(self):
+        out = self.run_of("bluetooth", "--duration", "30 s")
+        file = self.export(out, "pcapng")
+        for link in ("caller.bluetooth", "listener.bluetooth"):
+            for sender in (link.replace("bluetooth", "pic"), "bluetooth"):
+                expected = [" ".join(text.split()[:2]) for text, _ in
+                            self.decoded(out, "--protocol", "bluetooth", "--link", link, "--from-node", sender)
+                            if text.split()[0] in ("REQ", "CFM", "IND", "RSP")]
+                rows = self.fields(file, f'lmx9820 && frame.interface_name == "{link} {sender}"', "_ws.col.Info")
+                shown = [" ".join(part.split()[:2]) for row in rows for part in row[0].split(" | ")]
+                self.assertEqual(shown, expected)
+                if link.startswith("caller"):
+                    self.assertGreater(len(shown), 4)
+        self.assertEqual(self.fields(file, "lmx9820.wrong", "frame.number"), [])
+        found = self.fields(file, "lmx9820.opcode == 1", "lmx9820.data")
+        self.assertEqual(found[0][0][:12], "d2042c170008")  # 08:00:17:2C:04:D2, its low byte first
+
     @staticmethod
     def mesh_of(text):
         """Origin, sequence and data of a line of `trace decode`."""
