@@ -209,7 +209,7 @@ class Runs(Served):
         verdict = self.done(client.tool("run_scenario", scenario="room.toml", duration="1 s"))
         self.assertFalse(verdict["success"])
         self.assertFalse(verdict["expectations"][0]["met"])
-        run = self.done(client.tool("start_run", scenario="hello", duration="300 ms"))["run"]
+        run = self.done(client.tool("start_run", scenario="hello", duration="300 ms", in_process=False))["run"]
         ended = self.done(client.tool("step", run=run, to="1 s"))
         self.assertTrue(ended["ended"])
         self.assertIn("duration", ended["ended_why"])
