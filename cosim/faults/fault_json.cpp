@@ -1,6 +1,7 @@
 #include "cosim/faults/fault_json.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "cosim/faults/node_fault.h"
 
 #include <fmt/format.h>
@@ -88,7 +89,7 @@ std::vector<NodeFault> node_faults(const JsonValue& list) {
         for (const ordered_json& json : ordered_json::parse(dump(list)))
             faults.push_back(fault_from(json));
     } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "faults", error.what());
+        throw InputError("", "faults", reason_of(error));
     }
     return faults;
 }
@@ -107,7 +108,7 @@ std::vector<CarriedFault> faults_from_json(const ordered_json& list) {
         for (const ordered_json& json : list)
             faults.push_back(carried(fault_from(json)));
     } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "faults", error.what());
+        throw InputError("", "faults", reason_of(error));
     }
     return faults;
 }

@@ -1,6 +1,7 @@
 // The world as JSON text: how a node's description reaches its process.
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "physics/description/description_fields.h"
 #include "physics/description/world_form.h"
 
@@ -14,8 +15,7 @@ World from_json(std::string_view text) {
     try {
         return nlohmann::json::parse(text).get<World>();
     } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "", std::string("world description: ") + error.what(),
-                         "JSON as to_json writes it");
+        throw InputError("", "", "world description: " + reason_of(error), "JSON as to_json writes it");
     }
 }
 

@@ -1,6 +1,7 @@
 // Plans as JSON text: how they reach the world's process.
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "physics/description/description_fields.h"
 #include "physics/events/event.h"
 
@@ -33,7 +34,7 @@ EventPlan plan_from_json(std::string_view text) {
     try {
         return nlohmann::json::parse(text).get<EventPlan>();
     } catch (const nlohmann::json::exception& error) {
-        throw InputError("", "events", error.what(), "JSON as to_json writes it");
+        throw InputError("", "events", reason_of(error), "JSON as to_json writes it");
     }
 }
 

@@ -12,6 +12,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -58,7 +60,7 @@ bool is_dead(pid_t process) {
 }
 
 /// Private folders of runs that were killed, wherever their results are: this user's, of a process that is
-/// gone, with nothing in them but a socket that nobody listens to.
+/// gone, with nothing in them but sockets that nobody listens to.
 void remove_left_over_folders(const fs::path& place) {
     static const std::regex kName("puckloop-([0-9]{1,9})-[0-9a-f]{16}");
     std::error_code failed;
@@ -72,9 +74,13 @@ void remove_left_over_folders(const fs::path& place) {
         struct stat status {};
         if (::lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != ::geteuid())
             continue;
-        const fs::path socket = folder / kSocket;
-        if (fs::exists(fs::symlink_status(socket, failed)) && !is_left_over(socket.string())) continue;
-        fs::remove(socket, failed);
+        const std::array sockets{folder / kSocket, folder / kClientSocket};
+        const auto heard = [&](const fs::path& socket) {
+            return fs::exists(fs::symlink_status(socket, failed)) && !is_left_over(socket.string());
+        };
+        if (std::any_of(sockets.begin(), sockets.end(), heard)) continue;
+        for (const fs::path& socket : sockets)
+            fs::remove(socket, failed);
         fs::remove(folder, failed);  // not if there is anything else in it
     }
 }

@@ -1,6 +1,7 @@
 #include "run/snapshots/origin.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "base/sha256.h"
 #include "cosim/faults/fault_json.h"
 
@@ -173,7 +174,7 @@ RunRequest request_from(const std::string& origin, const RunRequest& request, co
         if (then.contains("seed")) all.seed = then["seed"].get<std::uint64_t>();
         return all;
     } catch (const json::exception& error) {
-        throw InputError(file, "", fmt::format("does not say whose run it is: {}", error.what()));
+        throw InputError(file, "", fmt::format("does not say whose run it is: {}", reason_of(error)));
     }
 }
 
@@ -184,7 +185,7 @@ void check_origin(const std::string& origin, const RunSetup& setup, cosim::Time 
         check_run(then.at("run"), run_of(setup), file);
         check_faults(then.at("faults"), faults_of(setup), time, file);
     } catch (const json::exception& error) {
-        throw InputError(file, "", fmt::format("does not say whose run it is: {}", error.what()));
+        throw InputError(file, "", fmt::format("does not say whose run it is: {}", reason_of(error)));
     }
 }
 

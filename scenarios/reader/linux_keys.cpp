@@ -99,7 +99,7 @@ void read_devices(Reader& reader, LinuxBoard& board) {
 void read_program(Reader& reader, LinuxBoard& board) {
     board.command = reader.texts("program");
     board.arguments = reader.texts("arguments");
-    if (board.command.empty() && board.arguments.empty())
+    if (board.command.empty() && !reader.has("arguments"))
         reader.fail("program", "'program' is missing", "program = [\"./controller\", \"-x\"]");
     board.hostname = reader.text("hostname", board.hostname);
     board.start = reader.quantity("start", Dimension::Time, 0.0);

@@ -384,6 +384,52 @@ slow:   dec r18
     CHECK(rig.ram(0x104) == 0xA0);
 }
 
+TEST_CASE("TWSTO of a slave: it is not addressed any more, no STOP is made, the bit clears itself") {
+    Rig rig(R"(
+        ldi r26, 0
+        ldi r27, 1
+        ldi r16, 0x42
+        sts TWAR, r16
+        ldi r16, 0xC4
+        sts TWCR, r16
+wait:   lds r17, TWCR
+        sbrs r17, 7
+        rjmp wait
+        lds r17, TWSR
+        st  X+, r17
+        ldi r16, 0xC4
+        cpi r17, 0x80
+        brne go
+        ldi r16, 0xD4       ; TWSTO with the first byte
+go:     sts TWCR, r16
+        rjmp wait
+)");
+    rig.run(100);
+    const auto phase = [&](Kind kind, std::uint8_t byte) {
+        cosim::I2cPhase p;
+        p.kind = kind;
+        p.byte = byte;
+        p.start = rig.chip.now();
+        p.clock_period = 10 * cosim::kMicrosecond;
+        rig.chip.twi_slave_phase(p);
+        rig.chip.run_until(rig.chip.now() + 100 * cosim::kMicrosecond);
+    };
+    phase(Kind::Start, 0x42);
+    phase(Kind::Write, 0x55);
+    phase(Kind::Write, 0x03);
+    phase(Kind::Stop, 0);
+    REQUIRE(rig.answers.size() == 3);
+    CHECK(rig.answers[1].ack == 1);
+    CHECK(rig.answers[2].ack == 0);
+    CHECK(rig.ram(0x100) == 0x60);
+    CHECK(rig.ram(0x101) == 0x80);
+    CHECK(rig.ram(0x102) == 0x00);  // neither 0x80 nor 0xA0
+    CHECK((rig.chip.peek("TWCR") & 0x10) == 0);
+    phase(Kind::Start, 0x42);  // it takes part again
+    REQUIRE(rig.answers.size() == 4);
+    CHECK(rig.answers[3].ack == 1);
+}
+
 TEST_CASE("the boot section writes a page, and reads fuses and signature") {
     ChipOptions options;
     options.fuses = {0xFF, 0xDE, 0xFD, 0xEF};

@@ -161,6 +161,45 @@ TEST_CASE_METHOD(I2cBench, "switching off in mid transfer frees the bus once the
     CHECK_FALSE(take(irq::MI2C));
 }
 
+TEST_CASE_METHOD(I2cBench, "what is asked for when the module is on again begins once the bus is free") {
+    constexpr std::uint16_t kAsked[] = {kSen, kRsen, kPen, kRcen, kAcken};
+    constexpr double kClocks[] = {1.0, 1.5, 1.5, 8.0, 0.125};
+    for (std::size_t i = 0; i < std::size(kAsked); ++i) {
+        CAPTURE(kAsked[i]);
+        set(kSen);
+        done();
+        write(sfr::I2CTRN, 0x40);
+        write(sfr::I2CCON, 0);
+        write(sfr::I2CCON, kEnable);
+        set(kAsked[i]);
+        CHECK((read(sfr::I2CCON) & kAsked[i]) != 0);
+        set(kPen);  // one at a time
+        CHECK((read(sfr::I2CCON) & (kPen & ~kAsked[i])) == 0);
+        const std::size_t sent = pins.phases.size();
+        answer(I2cPhaseKind::Acknowledge, 0, true);
+        REQUIRE(pins.phases.size() == sent + 1);
+        CHECK(pins.phases.back().kind == I2cPhaseKind::Stop);
+        const Cycle freed = now;
+        const Cycle ended = done();
+        CHECK(ended - freed == Approx(kClocks[i] * kScl).margin(2));
+        CHECK((read(sfr::I2CCON) & kAsked[i]) == 0);
+        write(sfr::I2CCON, 0);
+        write(sfr::I2CCON, kEnable);
+        read(sfr::I2CRCV);
+    }
+    // A byte without a START, likewise.
+    set(kSen);
+    done();
+    write(sfr::I2CTRN, 0x40);
+    write(sfr::I2CCON, 0);
+    write(sfr::I2CCON, kEnable);
+    write(sfr::I2CTRN, 0x55);
+    CHECK((stat() & (kTrstat | kTbf | kIwcol)) == (kTrstat | kTbf));
+    answer(I2cPhaseKind::Acknowledge, 0, true);
+    done();
+    CHECK((stat() & (kTrstat | kAckstat)) == kAckstat);
+}
+
 TEST_CASE_METHOD(I2cBench,
                  "the earliest next phase: a start condition away, or at once when the bus is owned") {
     CHECK(i2c.earliest(now) > now + 10);

@@ -168,6 +168,43 @@ TEST_CASE("the service routine of a read spins for eight clocks from the release
     CHECK(bus.pins.answers.size() == 2);
 }
 
+TEST_CASE("a byte that is left over from a transfer that was given up is sent without holding SCL") {
+    Bus bus(R"(
+        .org 0x200
+main:   mov #0x7FF0, w0
+        mov w0, SPLIM
+        mov #0x20, w0
+        mov w0, I2C1ADD
+        mov #0x9240, w0
+        mov w0, I2C1CON
+wait:   btss IFS1, #0
+        bra wait
+        bclr IFS1, #0
+        mov I2C1STAT, w2
+        mov I2C1RCV, w1
+        mov #0x5A, w0
+        btst.z w2, #2       ; R_W
+        bra z, free
+        mov w0, I2C1TRN
+free:   bset I2C1CON, #12
+        bra wait
+)");
+    bus.phase(I2cPhaseKind::Start, 0x41);
+    bus.chip.run_until(bus.bus + cosim::kMillisecond);
+    bus.bus = bus.chip.now() + cosim::kMicrosecond;
+    CHECK((bus.status() & kToSend) == kToSend);
+    bus.phase(I2cPhaseKind::Start, 0x40);  // a repeated START before a bit of it was clocked
+    bus.phase(I2cPhaseKind::Stop);
+    bus.chip.run_until(bus.bus + cosim::kMillisecond);
+    bus.bus = bus.chip.now() + cosim::kMicrosecond;
+    CHECK((bus.status() & kToSend) == kToSend);
+    CHECK(bus.phase(I2cPhaseKind::Start, 0x41).ack == 1);
+    const I2cPhase data = bus.phase(I2cPhaseKind::Read);  // begun before the address is shown
+    CHECK(data.kind == I2cPhaseKind::Data);
+    CHECK(data.byte == 0x5A);
+    CHECK(data.stretch == 0);
+}
+
 TEST_CASE("without STREN a byte that nobody fetched costs the next one") {
     // Without an interrupt nobody reads I2C1RCV.
     Bus bus(R"(

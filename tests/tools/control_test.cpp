@@ -205,11 +205,18 @@ TEST_CASE("private folders of runs that were killed are removed by the next run,
     const auto left = place / ("puckloop-" + std::to_string(child) + "-0123456789abcdef");
     const auto used = place / ("puckloop-" + std::to_string(child) + "-fedcba9876543210");
     const auto alive = place / ("puckloop-" + std::to_string(::getpid()) + "-0123456789abcdef");
-    for (const fs::path& folder : {left, used, alive})
+    const auto driven = place / ("puckloop-" + std::to_string(child) + "-00112233445566aa");
+    for (const fs::path& folder : {left, used, alive, driven})
         fs::create_directories(folder);
+    // Both sockets of a run that a client drove, and nobody listens any more.
+    for (const char* name : {"act", "control"}) {
+        const auto source = make_control_socket((driven / name).string());
+    }
+    REQUIRE(fs::exists(driven / "control"));
     std::ofstream(used / "notes.txt") << "mine";
     { const ControlPlace next("", run.results); }
     CHECK_FALSE(fs::exists(left));
+    CHECK_FALSE(fs::exists(driven));
     CHECK(fs::exists(used / "notes.txt"));
     CHECK(fs::exists(alive));
     for (const fs::path& folder : {left, used, alive})

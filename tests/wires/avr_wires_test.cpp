@@ -79,10 +79,15 @@ load:   mov r18, r24
         cpi r17, 0xB8
         brne next
 choose: sbrc r25, 6
-        rjmp next
+        rjmp leave
         sbrc r25, 4
-        rjmp next
+        rjmp leave
         ldi r16, 0x84
+leave:  sbrc r25, 2
+        rjmp next
+        sbrc r25, 3
+        rjmp next
+        ori r16, 0x10       ; TWSTO
 next:   sts TWCR, r16
         rjmp wait
 )",

@@ -102,6 +102,7 @@ class WireTwi : public WireSlave {
         const bool may_refuse =
             status == 0x60 || status == 0x70 || status == 0x80 || status == 0x90 || status == 0xB8;
         twea_ = !may_refuse || (drawn >> 14 & 1) != 0 || (drawn >> 12 & 1) != 0;
+        if (may_refuse && (drawn >> 10 & 3) == 0) mode_ = Mode::Idle;  // TWSTO
         if (status == 0xA8 || status == 0xB8) twdr_ = static_cast<std::uint8_t>(drawn ^ drawn >> 8);
     }
 

@@ -130,7 +130,11 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
     } catch (const std::system_error& error) {
         const std::string_view text = error.what();
         const bool output = text.starts_with("cannot write to file");  // fmt::print on a full disk
-        print_error(output ? "standard output: " + std::string(text) : error.code().message());
+        // What a thread that cannot be made says: of it, too, memory is the usual lack.
+        const bool lack = error.code() == std::errc::resource_unavailable_try_again;
+        print_error(output ? "standard output: " + std::string(text)
+                    : lack ? "not enough memory, or processes are limited to less (ulimit -v, -u)"
+                           : error.code().message());
         return 1;
     } catch (const std::bad_alloc& error) {
         print_error(reason_of(error));

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <iterator>
 #include <memory>
 
@@ -50,16 +51,35 @@ std::string listing(const avr::Program& program) {
     return text;
 }
 
+/// Code of a dsPIC between the reset vector and the end of the vector tables is never executed: a trap
+/// (DS70046, 6.2). Warns of its first line.
+void warn_of_code_in_vectors(const dspic::Program& program, const std::string& file) {
+    constexpr std::uint32_t kFirstVector = 0x4, kBehindVectors = 0x100;
+    for (const dspic::AssembledLine& line : program.lines) {
+        if (line.address < kFirstVector || line.address >= kBehindVectors) continue;
+        const std::string code = line.text.substr(line.text.find(':') + 1);  // 0 without a label
+        const std::size_t begin = code.find_first_not_of(" \t");
+        if (begin == std::string::npos || code[begin] == '.') continue;
+        fmt::print(
+            stderr,
+            "puckloop: warning: {}: line {}: code at {:06x}, where the vectors are: an address error trap "
+            "(expected goto start at 0 and .org 0x100 before it)\n",
+            file, line.line, line.address);
+        return;
+    }
+}
+
 std::string assemble_dspic(const AsmArguments& arguments, const std::string& file,
                            const dspic::DeviceInfo& device) {
     dspic::AssembleOptions options;
     options.file = file;
-    options.keep_lines = arguments.format == "list";
+    options.keep_lines = true;
     for (const dspic::RegisterInfo& info : device.registers)
         options.predefined[std::string(info.name)] = info.address;
     const dspic::Program program = dspic::assemble(read_text(arguments.file), options);
     if (program.words.empty()) throw InputError(file, "", "yields no program words", "instructions");
-    return options.keep_lines ? listing(program) : image::write_dspic_hex(program.words);
+    warn_of_code_in_vectors(program, file);
+    return arguments.format == "list" ? listing(program) : image::write_dspic_hex(program.words);
 }
 
 std::string assemble_avr(const AsmArguments& arguments, const std::string& file,

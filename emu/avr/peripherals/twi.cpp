@@ -159,6 +159,7 @@ void Twi::bus_free() {
 }
 
 void Twi::go_on() {
+    if ((state_.slave || state_.stop_waits) && (control() & kTwsto)) return leave_slave();
     if (state_.stop_waits) {
         state_.stop_waits = false;
         return interrupt(kSrStop);
@@ -312,6 +313,10 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
     const bool ends = phase.kind == Kind::Stop || phase.kind == Kind::Start;
     state_.lost = false;
     const bool in_address = around_.now < std::exchange(state_.address_ends, Cycle{0});
+    if (ends && state_.step == Step::SlaveAnswer && !was_slave) {  // a byte that TWSTO has left
+        around_.events.cancel(slot_);
+        state_.step = Step::None;
+    }
     if (ends && (in_address || state_.step == Step::SlaveAnswer)) return bus_error(phase);
     if (state_.awaiting && ends) {
         state_.awaiting = state_.owner = false;
@@ -368,6 +373,7 @@ void Twi::begin_slave_phase() {
 }
 
 void Twi::finish_slave_phase(Cycle now) {
+    if (!state_.slave) return refuse(state_.phase);  // TWSTO came meanwhile
     cosim::I2cPhase answer = state_.phase;
     answer.kind = Kind::Acknowledge;
     switch (state_.phase.kind) {
@@ -417,6 +423,21 @@ void Twi::bus_error(const cosim::I2cPhase& phase) {
     interrupt(kBusError);
     if (phase.kind == Kind::Stop) return bus_free();
     refuse(phase);
+}
+
+/// TWSTO of a slave: no STOP, but it is not addressed any more and lets go of the lines at once.
+void Twi::leave_slave() {
+    assign(control(), kTwsto, false);
+    state_.code = kIdle;
+    // A STOP or START that came meanwhile has ended it already, and the START may be for us again.
+    const bool ended = std::exchange(state_.stop_waits, false);
+    state_.slave = state_.slave && ended;
+    if (state_.step == Step::SlavePhaseOver) {
+        around_.events.cancel(slot_);
+        state_.step = Step::None;
+    }
+    if (state_.slave_waits) begin_slave_phase();  // of a slave that has left nobody acknowledges it
+    if (control() & kTwsta) start(false, around_.now + 1);
 }
 
 /// TWEA was cleared before the own address was over.

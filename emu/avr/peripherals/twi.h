@@ -104,6 +104,7 @@ class Twi {
     void finish_slave_byte(cosim::I2cPhase& answer);
     void refuse(cosim::I2cPhase phase);
     void refuse_address();
+    void leave_slave();
     void bus_error(const cosim::I2cPhase& phase);
     Cycle slave_clocks(int clocks, const cosim::I2cPhase& phase) const;
 

@@ -74,11 +74,31 @@ void I2cMaster::send(I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cos
     pins_.i2c_phase(setup_.unit, phase);
 }
 
-// An activity that ends by itself.
-void I2cMaster::begin(Activity activity, double duration_clocks) {
+double I2cMaster::duration_of(Activity activity) {
+    switch (activity) {
+    case Activity::Start:
+        return kStartClocks;
+    case Activity::Restart:
+        return kRestartClocks;
+    case Activity::Stop:
+        return kStopClocks;
+    case Activity::Transmit:
+        return kByteClocks;
+    case Activity::Receive:
+        return kDataClocks;
+    case Activity::Acknowledge:
+        return kAcknowledgeClocks;
+    case Activity::Idle:
+        break;
+    }
+    return 0.0;
+}
+
+// An activity that ends by itself. While the bus still has what was switched off, it waits (deviation 4).
+void I2cMaster::begin(Activity activity, Cycle from) {
     state_.activity = activity;
-    state_.ends = around_.now + 1 + clocks(duration_clocks);
-    around_.events.schedule(slot_, state_.ends);
+    state_.ends = state_.stop_when_answered ? kNoCycle : from + clocks(duration_of(activity));
+    plan();
 }
 
 void I2cMaster::stop_condition_seen(bool stopped) {
@@ -157,6 +177,7 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     if (state_.stop_when_answered) {
         state_.stop_when_answered = false;
         send(I2cPhaseKind::Stop, 0, 0, clock_.time_of(at));
+        if (state_.activity != Activity::Idle) begin(state_.activity, at + 1);
         return;
     }
     state_.buffer_empty = kNoCycle;
@@ -203,14 +224,14 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
         return;
     }
     if (self.slave_ && self.slave_->transmitting()) return self.slave_->load(value);
-    if (state.activity != Activity::Idle || state.awaits_answer) {
+    if (state.activity != Activity::Idle || self.busy()) {
         stat |= kI2CxSTAT["IWCOL"];
         return;
     }
     self.around_.sfr.store(address, value, mask);
     stat |= kI2CxSTAT["TBF"] | kI2CxSTAT["TRSTAT"];
     if (!state.owns_bus) {
-        self.begin(Activity::Transmit, kByteClocks);
+        self.begin(Activity::Transmit, self.around_.now + 1);
         return;
     }
     state.activity = Activity::Transmit;
@@ -259,8 +280,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         }
     }
     const std::uint16_t asked = value & mask & kOneAtATime;
-    if (!(con & kI2CxCON["I2CEN"]) || !asked || state.activity != Activity::Idle || state.awaits_answer)
-        return;
+    if (!(con & kI2CxCON["I2CEN"]) || !asked || state.activity != Activity::Idle || self.busy()) return;
     const cosim::Time start = self.clock_.time_of(self.around_.now + 1);
     if (asked & kI2CxCON["SEN"]) {
         if (!state.owns_bus && self.slave_ && self.slave_->bus_taken()) {  // SDA or SCL is low
@@ -269,10 +289,10 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             return;
         }
         con |= kI2CxCON["SEN"];
-        self.begin(Activity::Start, kStartClocks);
+        self.begin(Activity::Start, self.around_.now + 1);
     } else if (asked & kI2CxCON["RSEN"]) {
         con |= kI2CxCON["RSEN"];
-        self.begin(Activity::Restart, kRestartClocks);
+        self.begin(Activity::Restart, self.around_.now + 1);
     } else if (asked & kI2CxCON["PEN"]) {
         con |= kI2CxCON["PEN"];
         const bool owned = state.owns_bus;
@@ -281,7 +301,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             state.activity = Activity::Stop;
             state.awaits_answer = true;
         } else {
-            self.begin(Activity::Stop, kStopClocks);
+            self.begin(Activity::Stop, self.around_.now + 1);
         }
         if (owned) self.send(I2cPhaseKind::Stop, 0, 0, start);
     } else if (asked & kI2CxCON["RCEN"]) {
@@ -289,7 +309,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         if (!state.owns_bus) {  // an idle bus reads as ones
             self.reg(kRcv) = 0xFF;
             self.reg(kStat) |= kI2CxSTAT["RBF"];
-            self.begin(Activity::Receive, kDataClocks);
+            self.begin(Activity::Receive, self.around_.now + 1);
             return;
         }
         self.end_byte_read(start);
@@ -305,7 +325,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     } else {
         con |= kI2CxCON["ACKEN"];
         state.acknowledged = !(con & kI2CxCON["ACKDT"]);
-        if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge, kAcknowledgeClocks);
+        if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge, self.around_.now + 1);
         state.activity = Activity::Acknowledge;
         state.awaits_answer = true;
         state.received = false;

@@ -15,6 +15,8 @@
 //     acknowledge was given, by the stop, repeated start or byte that follows. A byte without its ninth clock
 //     is not acknowledged and costs a clock less; the bits after it are not out of step.
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
+//  What
+//     the program asks for before, with I2CEN = 1 again, begins after that: up to nine clocks late.
 //  5. Transmitting without a start condition reaches nobody: not acknowledged.
 //  6. A start condition while another master's transfer is under way is a collision (BCL) at once, also at an
 //     instant at which both lines happen to be high.
@@ -100,7 +102,10 @@ class I2cMaster {
 
     double clock_cycles() const;  ///< one SCL period in instruction cycles
     Cycle clocks(double count) const;
-    void begin(Activity activity, double duration_clocks);
+    static double duration_of(Activity activity);  ///< SCL periods
+    void begin(Activity activity, Cycle from);
+    /// A byte of its own is on the bus.
+    bool busy() const { return state_.awaits_answer && !state_.stop_when_answered; }
     void send(cosim::I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cosim::Time start);
     void end_byte_read(cosim::Time start);
     void complete(Cycle at);

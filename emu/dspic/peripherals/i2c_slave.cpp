@@ -200,7 +200,11 @@ void I2cSlave::show(bool address, std::uint8_t byte, Cycle at) {
         assign(stat, kI2CxSTAT["R_W"], state_.sends);
         assign(stat, kI2CxSTAT["GCSTAT"], byte == 0 && !state_.whole);
         assign(stat, kI2CxSTAT["ADD10"], state_.whole);
-        if (state_.sends && state_.addressed) wait_for_byte();
+        if (state_.sends && state_.addressed) {
+            wait_for_byte();
+            // The master may have begun the byte before the address was shown.
+            if (state_.step == Step::Hold && released()) shift(state_.open.start);
+        }
     }
     around_.interrupts.raise(setup_.slave_irq, at);
 }
@@ -326,6 +330,9 @@ Time I2cSlave::earliest_answer(Cycle now) const {
     case Step::Stretch:
         return clock_.time_of(now + 1);
     case Step::Hold:
+        if (state_.shown_due != kNoCycle)  // with a byte loaded by then nothing is held
+            return clock_.time_of(
+                std::max(now, cycle_before(state_.open.start + clocks(state_.open, kAnswerClocks))));
         return clock_.time_of(now + 1) + clocks(state_.open, kAnswerClocks);
     }
     return cosim::kNever;
