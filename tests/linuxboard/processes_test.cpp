@@ -9,9 +9,11 @@
 
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -109,6 +111,41 @@ TEST_CASE("a program reached from Python keeps clock, time and port") {
         "import subprocess; print(subprocess.check_output(\"" + clocks + "\", text=True))",
     }));
     check_wrapped("exec " + python + " -c '" + words + "'");
+}
+
+TEST_CASE("calls of a process number mean the program's processes, and reach none of the host") {
+    const linuxboard::LinuxSpec own = spec_for("numbers", {"own"});
+    const Ran ran = run(own);
+    CHECK(ran.log == "failures 0\n");
+    CHECK(ran.warnings.size() == 1);  // of the value of sigqueue() to a child
+    check_same(own, ran);
+    const pid_t stranger = ::fork();
+    if (stranger == 0) {
+        ::pause();
+        ::_exit(0);
+    }
+    REQUIRE(stranger > 0);
+    CHECK(run(spec_for("numbers", {"foreign", std::to_string(stranger)})).log == "failures 0\n");
+    CHECK(::waitpid(stranger, nullptr, WNOHANG) == 0);  // it lives
+    CHECK(::getpriority(PRIO_PROCESS, static_cast<id_t>(stranger)) == ::getpriority(PRIO_PROCESS, 0));
+    ::kill(stranger, SIGKILL);
+    ::waitpid(stranger, nullptr, 0);
+}
+
+TEST_CASE("locks, queues and semaphores of several processes are waited for in simulated time") {
+    const linuxboard::LinuxSpec spec = spec_for("numbers", {"wait"});
+    const Ran ran = run(spec);
+    const std::string expected =
+        "flock at once -#\nflock 0 at 10#\nlockf 0 at 20#\nmsgrcv 4 at 30#\nsemop 0 at 40#\n"
+        "semtimedop too late 1 at 45#\nmq_receive 1 at 55#\nsplice 1 at 65#\n"
+        "raise 0, kill 0: goes on\n";
+    std::string seen = ran.log;  // the last digit of each time is the model's
+    for (std::size_t at = 0; (at = seen.find(" at ", at)) != std::string::npos; ++at)
+        if (const std::size_t end = seen.find('\n', at);
+            end != std::string::npos && std::isdigit(seen[end - 1]) != 0)
+            seen[end - 1] = '#';
+    CHECK(seen == expected);
+    check_same(spec, ran);
 }
 
 TEST_CASE("two processes share the port, each in its own rhythm") {

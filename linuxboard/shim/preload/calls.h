@@ -46,6 +46,13 @@ bool is_channel(int fd);
 
 // external.cpp
 bool is_named_pipe(const char* path);
+/// Lets a millisecond pass, or until `deadline`, before something outside is looked at again. False after a
+/// signal that ends the call.
+bool look_again(Time deadline);
+
+// shared_calls.cpp
+/// F_SETLKW and F_OFD_SETLKW.
+int wait_for_lock(int fd, int command, void* lock);
 /// park() on an object that may be `shared` with other processes: theirs do not wake, so it is looked at
 /// every millisecond as long as there are some.
 Wake park_shared(const void* key, WaitOptions options, bool shared);

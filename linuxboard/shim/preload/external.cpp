@@ -63,6 +63,14 @@ Wake park_shared(const void* key, WaitOptions options, bool shared) {
     return reason == Wake::Timeout && now() < asked ? Wake::Key : reason;
 }
 
+bool look_again(Time deadline) {
+    WaitOptions options;
+    options.deadline = std::min(deadline, time_after(kExternalPeriod));
+    options.interruptible = true;
+    options.cancellable = true;
+    return park(&the_external_key, options) != Wake::Signal || self()->restarts;
+}
+
 bool await_external(int fd, short events) {
     pollfd entry{fd, events, 0};
     while (REAL(poll)(&entry, 1, 0) == 0) {
@@ -70,11 +78,7 @@ bool await_external(int fd, short events) {
             note("the program waits on descriptor %d, which is outside of simulated time: runs may differ",
                  fd);
         }
-        WaitOptions options;
-        options.deadline = time_after(kExternalPeriod);
-        options.interruptible = true;
-        options.cancellable = true;
-        if (park(&the_external_key, options) == Wake::Signal && !self()->restarts) return false;
+        if (!look_again(kNever)) return false;
     }
     return true;
 }

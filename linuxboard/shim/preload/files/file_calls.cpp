@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/files/video_names.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/outside.h"
+#include "linuxboard/shim/preload/processes/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
@@ -226,6 +227,8 @@ SHIM_EXPORT int dup2(int fd, int copy) noexcept {
 }
 
 namespace {
+/// What the kernel sets for each open() of a 64-bit program; the C library's O_LARGEFILE is 0 there.
+constexpr int kLargeFile = sizeof(long) == 8 ? 0100000 : O_LARGEFILE;
 /// F_SETFL changes these.
 constexpr int kSettableFlags = O_APPEND | O_NONBLOCK | O_NOATIME;
 
@@ -244,6 +247,32 @@ int lock_device(int command, long argument) {
     return put_to_program(theirs, lock) ? 0 : -1;
 }
 
+bool is_about_owner(int command) {
+    return command == F_SETOWN || command == F_GETOWN || command == F_SETOWN_EX || command == F_GETOWN_EX;
+}
+
+/// Who gets SIGIO and SIGURG: a process of the program's. Groups are not the host's.
+int control_owner(int fd, int command, long argument, decltype(&::fcntl) real) {
+    f_owner_ex owner{F_OWNER_PID, 0};
+    auto* const theirs = reinterpret_cast<f_owner_ex*>(argument);
+    if (command == F_GETOWN || command == F_GETOWN_EX) {
+        if (real(fd, F_GETOWN_EX, &owner) != 0) return -1;
+        if (owner.pid != 0) owner.pid = program_process(owner.pid);
+        if (command == F_GETOWN) return owner.pid;
+        return put_to_program(theirs, owner) ? 0 : -1;
+    }
+    if (command == F_SETOWN)
+        owner.pid = static_cast<pid_t>(argument);
+    else if (!get_from_program(owner, theirs))
+        return -1;
+    if (owner.type == F_OWNER_PGRP || owner.pid < 0) {
+        note("signals of descriptors to a process group are not supported");
+        return getpgid(owner.pid < 0 ? -owner.pid : owner.pid) < 0 ? -1 : 0;
+    }
+    const pid_t host = host_process(owner.pid);
+    return host < 0 ? -1 : real(fd, F_SETOWN, static_cast<long>(host));
+}
+
 int control(int fd, int command, long argument, decltype(&::fcntl) real) {
     if (active() && is_link_descriptor(fd)) {
         if (command == F_SETFD) return 0;
@@ -253,7 +282,7 @@ int control(int fd, int command, long argument, decltype(&::fcntl) real) {
     OpenFile* file = open_file(fd);
     switch (file != nullptr ? command : -1) {
     case F_GETFL:
-        return file->flags | O_LARGEFILE;
+        return file->flags | kLargeFile;
     case F_SETFL:
         charge(page().charges.device);
         if ((argument & O_DIRECT) != 0) {
@@ -277,6 +306,9 @@ int control(int fd, int command, long argument, decltype(&::fcntl) real) {
     default:
         break;
     }
+    if (active() && thread_count() > 0 && (command == F_SETLKW || command == F_OFD_SETLKW))
+        return wait_for_lock(fd, command, reinterpret_cast<void*>(argument));
+    if (active() && is_about_owner(command)) return control_owner(fd, command, argument, real);
     const int result = real(fd, command, argument);
     if (active() && result >= 0 && (command == F_DUPFD || command == F_DUPFD_CLOEXEC)) copied(fd, result);
     return result;
@@ -297,10 +329,6 @@ SHIM_EXPORT int fcntl64(int fd, int command, ...) {
     const long argument = va_arg(arguments, long);
     va_end(arguments);
     return control(fd, command, argument, REAL(fcntl64));
-}
-
-SHIM_EXPORT int flock(int fd, int operation) noexcept {
-    return open_file(fd) != nullptr ? 0 : REAL(flock)(fd, operation);
 }
 
 SHIM_EXPORT ssize_t read(int fd, void* buffer, size_t size) {

@@ -1,6 +1,7 @@
 // Calls that need a place in a file: a serial port has none, an I2C adapter and a camera ignore it. And calls
 // that move data without a buffer of the program, which devices do not know.
 
+#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/real.h"
@@ -124,7 +125,17 @@ SHIM_EXPORT ssize_t sendfile64(int to, int from, off64_t* offset, size_t size) n
 SHIM_EXPORT ssize_t splice(int from, off64_t* from_offset, int to, off64_t* to_offset, size_t size,
                            unsigned flags) {
     if (is_device(to) || is_device(from)) return fail(EINVAL);
-    return REAL(splice)(from, from_offset, to, to_offset, size, flags);
+    const auto call = [&] { return REAL(splice)(from, from_offset, to, to_offset, size, flags); };
+    if ((flags & SPLICE_F_NONBLOCK) != 0) return call();
+    return is_channel(from) ? outside(from, POLLIN, call) : outside(to, POLLOUT, call);
+}
+SHIM_EXPORT ssize_t tee(int from, int to, size_t size, unsigned flags) {
+    const auto call = [&] { return REAL(tee)(from, to, size, flags); };
+    return (flags & SPLICE_F_NONBLOCK) != 0 ? call() : outside(from, POLLIN, call);
+}
+SHIM_EXPORT ssize_t vmsplice(int fd, const iovec* parts, size_t count, unsigned flags) {
+    const auto call = [&] { return REAL(vmsplice)(fd, parts, count, flags); };
+    return (flags & SPLICE_F_NONBLOCK) != 0 ? call() : outside(fd, POLLOUT, call);
 }
 SHIM_EXPORT ssize_t copy_file_range(int from, off64_t* from_offset, int to, off64_t* to_offset, size_t size,
                                     unsigned flags) {

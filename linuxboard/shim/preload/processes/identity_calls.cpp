@@ -5,13 +5,13 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/processes/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
-#include <sched.h>
+#include <pthread.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -26,16 +26,13 @@ namespace {
 constexpr pid_t kFirstThread = 100'000;
 constexpr pid_t kThreadsOfProcess = 1024;
 
-bool is_own(pid_t process) {
-    return process == 0 || process == own().number;
-}
-
-/// The host's number for a process of the program; 0 for one that is none.
-pid_t host_process(pid_t given) {
-    if (!active() || given == 0) return given;
-    for (const wire::ProcessEntry& entry : page().processes)
-        if (entry.state != wire::ProcessEntry::Free && entry.number == given) return entry.host;
-    return -1;
+/// A signal that would stop this process, and with it simulated time.
+bool stops_by_default(int number) {
+    if (number != SIGTSTP && number != SIGTTIN && number != SIGTTOU) return number == SIGSTOP;
+    struct sigaction action {};
+    if (sigaction(number, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) return false;
+    note("stopping a process has no effect");
+    return true;
 }
 
 /// Sends `number` to the processes that `chosen` picks; false if there is none.
@@ -47,6 +44,7 @@ bool send_to(int number, Choice chosen) {
         const wire::ProcessEntry& entry = page().processes[slot];
         if (entry.state == wire::ProcessEntry::Free || !chosen(entry)) continue;
         found = true;
+        if (number == SIGSTOP) continue;  // it would stop the whole board
         if (slot == own_slot()) {
             self_too = true;
         } else if (number != 0 && entry.state == wire::ProcessEntry::Alive) {
@@ -57,7 +55,8 @@ bool send_to(int number, Choice chosen) {
             device_call(request);
         }
     }
-    if (self_too && number != 0) REAL(kill)(static_cast<pid_t>(host_call(SYS_getpid)), number);
+    if (self_too && number != 0 && !stops_by_default(number))
+        REAL(kill)(static_cast<pid_t>(host_call(SYS_getpid)), number);
     return found;
 }
 }  // namespace
@@ -79,6 +78,24 @@ pid_t thread_number(std::uint32_t index) {
                       : kFirstThread + kThreadsOfProcess * (own().number - wire::kFirstProcess) +
                             static_cast<pid_t>(index);
 }
+
+int signal_thread(pid_t process, pid_t thread, int number) {
+    if (number < 0 || number >= NSIG) {
+        errno = EINVAL;
+        return -1;
+    }
+    for (std::size_t i = 0; (process < 0 || process == own().number) && i < thread_count(); ++i) {
+        const Thread* candidate = thread_at(i);
+        if (candidate == nullptr || !candidate->has_handle || thread_number(candidate->index) != thread)
+            continue;
+        errno = pthread_kill(candidate->handle, number);
+        return errno == 0 ? 0 : -1;
+    }
+    // Of another process only the first thread is known: it is the process.
+    if (thread > 0 && (process < 0 || process == thread)) return kill(thread, number);
+    errno = ESRCH;
+    return -1;
+}
 }  // namespace puckloop::shim
 
 SHIM_EXPORT pid_t gettid() noexcept {
@@ -91,7 +108,7 @@ SHIM_EXPORT int kill(pid_t process, int number) noexcept {
         errno = EINVAL;
         return -1;
     }
-    if (number == SIGSTOP || number == SIGTSTP) note("stopping a process has no effect");
+    if (number == SIGSTOP) note("stopping a process has no effect");
     const pid_t group = process == 0 ? own().group : -process;
     const bool found = send_to(number, [&](const wire::ProcessEntry& entry) {
         if (process > 0) return entry.number == process;
@@ -100,6 +117,12 @@ SHIM_EXPORT int kill(pid_t process, int number) noexcept {
     if (found) return 0;
     errno = ESRCH;  // the host's own processes are out of reach
     return -1;
+}
+
+SHIM_EXPORT int raise(int number) noexcept {
+    if (!active()) return REAL(raise)(number);
+    if (number == SIGSTOP) note("stopping a process has no effect");
+    return number > 0 && number < NSIG && stops_by_default(number) ? 0 : REAL(raise)(number);
 }
 
 SHIM_EXPORT int killpg(pid_t group, int number) noexcept {
@@ -130,21 +153,6 @@ SHIM_EXPORT pid_t setsid() noexcept {
 
 SHIM_EXPORT pid_t getpgrp() noexcept {
     return active() ? own().group : REAL(getpgrp)();
-}
-
-SHIM_EXPORT int sched_setscheduler(pid_t process, int policy, const sched_param* parameters) noexcept {
-    // One thread runs at a time whatever its priority; the host's is not changed.
-    if (active() && is_own(process)) return 0;
-    return REAL(sched_setscheduler)(process, policy, parameters);
-}
-
-SHIM_EXPORT int sched_setaffinity(pid_t process, size_t size, const cpu_set_t* processors) noexcept {
-    return REAL(sched_setaffinity)(host_process(process), size, processors);
-}
-
-SHIM_EXPORT int setpriority(__priority_which_t which, id_t who, int priority) noexcept {
-    if (active() && which == PRIO_PROCESS && is_own(static_cast<pid_t>(who))) return 0;
-    return REAL(setpriority)(which, who, priority);
 }
 
 SHIM_EXPORT pid_t getpgid(pid_t process) noexcept {

@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/processes/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
@@ -40,11 +41,6 @@ int set_file_size(const Limit* limit) {
     if (wanted.rlim_cur != RLIM_INFINITY) note("the limit of file sizes is not enforced");
     file_size = {wanted.rlim_cur, wanted.rlim_max};
     return 0;
-}
-
-/// The process itself has another number on the host.
-pid_t own_number() {
-    return active() ? own().number : -1;
 }
 
 /// A limit that leaves room for the link.
@@ -100,13 +96,15 @@ SHIM_EXPORT int getrlimit64(__rlimit_resource_t resource, rlimit64* limit) noexc
 SHIM_EXPORT int prlimit(pid_t process, __rlimit_resource resource, const rlimit* limit,
                         rlimit* before) noexcept {
     return change_limit(static_cast<int>(resource), limit, before, [&](const rlimit* wanted) {
-        return REAL(prlimit)(process == own_number() ? 0 : process, resource, wanted, before);
+        const pid_t host = host_process(process);
+        return host < 0 ? -1 : REAL(prlimit)(host, resource, wanted, before);
     });
 }
 
 SHIM_EXPORT int prlimit64(pid_t process, __rlimit_resource resource, const rlimit64* limit,
                           rlimit64* before) noexcept {
     return change_limit(static_cast<int>(resource), limit, before, [&](const rlimit64* wanted) {
-        return REAL(prlimit64)(process == own_number() ? 0 : process, resource, wanted, before);
+        const pid_t host = host_process(process);
+        return host < 0 ? -1 : REAL(prlimit64)(host, resource, wanted, before);
     });
 }

@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <fcntl.h>
+#include <mqueue.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
@@ -13,7 +14,9 @@
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/msg.h>
 #include <sys/select.h>
+#include <sys/sem.h>
 #include <sys/sendfile.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -84,6 +87,14 @@ bool file_syscall(long number, const Argument (&a)[6], long* result) {
         PUCKLOOP_SYSCALL(lseek, lseek(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(sendfile, sendfile(a[0], a[1], a[2], a[3]));
         PUCKLOOP_SYSCALL(splice, splice(a[0], a[1], a[2], a[3], a[4], a[5]));
+        PUCKLOOP_SYSCALL(tee, tee(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(vmsplice, vmsplice(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(semop, semop(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(semtimedop, semtimedop(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(msgrcv, msgrcv(a[0], a[1], a[2], a[3].value, a[4]));
+        PUCKLOOP_SYSCALL(msgsnd, msgsnd(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(mq_timedreceive, mq_timedreceive(a[0], a[1], a[2], a[3], a[4]));
+        PUCKLOOP_SYSCALL(mq_timedsend, mq_timedsend(a[0], a[1], a[2], a[3], a[4]));
         PUCKLOOP_SYSCALL(copy_file_range, copy_file_range(a[0], a[1], a[2], a[3], a[4], a[5]));
         PUCKLOOP_SYSCALL(fstat, fstat(a[0], a[1]));
         PUCKLOOP_SYSCALL(fchmod, fchmod(a[0], a[1]));

@@ -1,7 +1,9 @@
 // System calls for processes: made, replaced, ended, named. What nobody can conduct is refused by name.
 
 #include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
+#include "linuxboard/shim/preload/processes/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
@@ -18,6 +20,8 @@
 #include <algorithm>
 #include <cstdint>
 
+extern "C" int pidfd_open(pid_t process, unsigned flags) noexcept;
+
 namespace puckloop::shim {
 
 namespace {
@@ -28,6 +32,59 @@ long clone3(const void* argument, std::size_t size) {
     const auto pointer = [](std::uint64_t number) { return reinterpret_cast<void*>(number); };
     return clone_process("syscall(SYS_clone3)", wanted.flags, static_cast<int>(wanted.exit_signal),
                          pointer(wanted.stack), pointer(wanted.parent_tid), pointer(wanted.child_tid));
+}
+/// The kernel's answer counts from 40 (the least nice) down to 1.
+long kernels_priority(int which, pid_t who) {
+    errno = 0;
+    const int level = getpriority(static_cast<__priority_which_t>(which), static_cast<id_t>(who));
+    return level == -1 && errno != 0 ? -1 : 20 - level;
+}
+
+/// Which argument of a call is a process number; -1: none. Calls that this library takes over are not here.
+int process_argument(long number, const Argument (&a)[6]) {
+    constexpr int kIoprioProcess = 1;
+    switch (number) {
+    case SYS_sched_getscheduler:
+    case SYS_sched_getparam:
+    case SYS_sched_rr_get_interval:
+    case SYS_sched_getaffinity:
+    case SYS_sched_getattr:
+    case SYS_sched_setattr:
+    case SYS_process_vm_readv:
+    case SYS_process_vm_writev:
+    case SYS_move_pages:
+    case SYS_migrate_pages:
+    case SYS_get_robust_list:
+    case SYS_kcmp:
+        return 0;
+    case SYS_ioprio_get:
+    case SYS_ioprio_set:
+        return a[0].value == kIoprioProcess ? 1 : -1;
+    case SYS_perf_event_open:
+        return a[1].value > 0 ? 1 : -1;
+    default:
+        return -1;
+    }
+}
+
+/// Makes such a call with the host's number.
+bool of_host_process(long number, const Argument (&a)[6], long* result) {
+    const int which = process_argument(number, a);
+    if (which < 0) return false;
+    long values[6];
+    for (std::size_t i = 0; i < 6; ++i)
+        values[i] = a[i].value;
+    const int last = number == SYS_kcmp ? 1 : which;
+    for (int i = which; i <= last; ++i) {
+        const pid_t host = host_process(a[i]);
+        if (host < 0) {
+            *result = -1;
+            return true;
+        }
+        values[i] = host;
+    }
+    *result = host_call(number, values[0], values[1], values[2], values[3], values[4], values[5]);
+    return true;
 }
 }  // namespace
 
@@ -49,6 +106,9 @@ bool process_syscall(long number, const Argument (&a)[6], long* result) {
         PUCKLOOP_SYSCALL(uname, uname(a[0]));
         PUCKLOOP_SYSCALL(prlimit64, prlimit64(a[0], static_cast<__rlimit_resource>(a[1].value), a[2], a[3]));
         PUCKLOOP_SYSCALL(setpriority, setpriority(static_cast<__priority_which_t>(a[0].value), a[1], a[2]));
+        PUCKLOOP_SYSCALL(getpriority, kernels_priority(a[0], a[1]));
+        PUCKLOOP_SYSCALL(sched_setparam, sched_setparam(a[0], a[1]));
+        PUCKLOOP_SYSCALL(pidfd_open, pidfd_open(a[0], a[1]));
         PUCKLOOP_SYSCALL(sched_setscheduler, sched_setscheduler(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(sched_setaffinity, sched_setaffinity(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(wait4, wait4(a[0], a[1], a[2], a[3]));
@@ -91,7 +151,7 @@ bool process_syscall(long number, const Argument (&a)[6], long* result) {
         refuse_call("syscall(SYS_io_uring_setup)", "whose input and output pass by every call");
         return true;
     default:
-        return false;
+        return of_host_process(number, a, result);
     }
 }
 

@@ -2,7 +2,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/kernel_signals.h"
-#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/processes/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
@@ -66,17 +66,11 @@ long wait_for_signal(const Argument (&a)[6]) {
     return sigtimedwait(&set, a[1], a[2]);
 }
 
-/// A signal for one thread of this process; false if it is none of this program's.
-bool signal_thread(long* result, pid_t process, pid_t thread, int number) {
-    if (process >= 0 && process != own().number) return false;
-    for (std::size_t i = 0; i < thread_count(); ++i) {
-        const Thread* candidate = thread_at(i);
-        if (candidate == nullptr || !candidate->has_handle || thread_number(candidate->index) != thread)
-            continue;
-        *result = failed(pthread_kill(candidate->handle, number));
-        return true;
-    }
-    return false;
+/// What sigqueue() makes: number, code, value. A code that only the kernel gives is not for others.
+long queue_signal(pid_t process, int number, const void* theirs) {
+    siginfo_t info{};
+    if (!get_from_program(info, theirs)) return -1;
+    return sigqueue(process, number, info.si_value);
 }
 }  // namespace
 
@@ -90,10 +84,10 @@ bool signal_syscall(long number, const Argument (&a)[6], long* result) {
         PUCKLOOP_SYSCALL(rt_sigprocmask, set_mask(a[0], a[1], a[2], a[3]));
         PUCKLOOP_SYSCALL(rt_sigsuspend, suspend(a[0], a[1]));
         PUCKLOOP_SYSCALL(rt_sigtimedwait, wait_for_signal(a));
-    case SYS_tgkill:
-        return signal_thread(result, a[0], a[1], a[2]);
-    case SYS_tkill:
-        return signal_thread(result, -1, a[0], a[1]);
+        PUCKLOOP_SYSCALL(tgkill, tgkill(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(tkill, signal_thread(-1, a[0], a[1]));
+        PUCKLOOP_SYSCALL(rt_sigqueueinfo, queue_signal(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(rt_tgsigqueueinfo, tgkill(a[0], a[1], a[2]));
     default:
         return false;
     }
