@@ -160,16 +160,16 @@ class Run:
     @staticmethod
     async def _connect(launched: Launched | Found) -> Line:
         begun = time.monotonic()
+        nobody: NobodyServes | None = None
         while time.monotonic() - begun < launched.patience:
             path = launched.socket()
             if path is not None:
                 try:
                     return await Line.to(path)
-                except NobodyServes:
-                    if isinstance(launched, Found):
-                        raise  # else not yet
+                except NobodyServes as error:  # not yet: the socket's name is known before it is there
+                    nobody = error
             await asyncio.sleep(launch.POLL_SECONDS)
-        raise StartError(f"the run did not listen for {launched.patience:g} s")
+        raise nobody or StartError(f"the run did not listen for {launched.patience:g} s")
 
     # What it is.
     @property

@@ -135,7 +135,7 @@ class Launched:
 class Found:
     """A run that somebody else began with --control. StartError: there is none in this results folder."""
 
-    patience = 5.0  #: seconds of wall time, until control.json is written to its end
+    patience = 5.0  #: seconds of wall time, until control.json is written to its end and its socket served
 
     def __init__(self, results: str | os.PathLike[str]) -> None:
         self.results = pathlib.Path(results).absolute()

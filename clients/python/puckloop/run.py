@@ -118,16 +118,16 @@ class Run:
 
     def _connect(self) -> Line:
         begun = time.monotonic()
+        nobody: NobodyServes | None = None
         while time.monotonic() - begun < self._launched.patience:
             path = self._launched.socket()
             if path is not None:
                 try:
                     return Line(path)
-                except NobodyServes:
-                    if isinstance(self._launched, Found):
-                        raise  # else not yet
+                except NobodyServes as error:  # not yet: the socket's name is known before it is there
+                    nobody = error
             time.sleep(launch.POLL_SECONDS)
-        raise StartError(f"the run did not listen for {self._launched.patience:g} s")
+        raise nobody or StartError(f"the run did not listen for {self._launched.patience:g} s")
 
     # What it is.
     @property
