@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "cosim/resume/run_snapshot.h"
 #include "cosim/trace/trace_csv.h"
+#include "physics/render/arena_file.h"
 #include "physics/render/trajectory_svg.h"
 
 #include <fmt/format.h>
@@ -85,10 +86,10 @@ void raise_descriptor_limit() {
 }  // namespace
 
 std::vector<std::string> result_files(const RunSetup& setup) {
-    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
-                                   "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
-                                   "tams.csv",       "faults.csv",       "record.csv",  "trace.sr",
-                                   "trace.vcd",      "trace.pcapng",     "tracker.csv", "mission.log"};
+    std::vector<std::string> names{
+        "report.json", "report.json.part", "trace.csv",  "trajectory.csv", "trajectory.svg", "sensors.csv",
+        "objects.csv", "ir.csv",           "tams.csv",   "faults.csv",     "record.csv",     "trace.sr",
+        "trace.vcd",   "trace.pcapng",     "arena.json", "tracker.csv",    "mission.log"};
     for (const PlannedNode& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);
@@ -178,6 +179,8 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     const ResultsFolder folder(setup.out, result_files(setup));
     make_work_folders(setup);
     ReservedFile report(setup.out / "report.json", kReportBytes);
+    // From the start, so that a run that is killed has it as well.
+    physics::write_arena_file(with_added_things(setup.scenario), setup.out / "arena.json");
 
     std::error_code ignored;
     if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", ignored);

@@ -1,0 +1,45 @@
+#include "physics/render/arena_file.h"
+
+#include "base/error.h"
+#include "base/text_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <iterator>
+
+namespace puckloop::physics {
+
+namespace {
+
+constexpr const char* kRemedy = "the arena.json of a run: run the scenario again";
+
+}  // namespace
+
+void write_arena_file(World world, const std::filesystem::path& file) {
+    world.recording = {};
+    write_file(file, fmt::format("{{\"format\":{},\"world\":{}}}\n", kArenaFormat, to_json(world)));
+}
+
+World read_arena_file(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw InputError(file.string(), "", "cannot be read", kRemedy);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto format = json.is_object() ? json.find("format") : json.end();
+    if (!json.is_object() || format == json.end() || !format->is_number_integer() || !json.contains("world"))
+        throw InputError(file.string(), "", "is damaged", kRemedy);
+    if (*format != kArenaFormat)
+        throw InputError(file.string(), "format", fmt::format("is {}", format->dump()),
+                         fmt::format("{}: run the scenario again with this puckloop", kArenaFormat));
+    try {
+        World world = from_json(json["world"].dump());
+        check(world);
+        return world;
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), "world", error.what(), kRemedy);
+    }
+}
+
+}  // namespace puckloop::physics
