@@ -31,9 +31,10 @@ double seconds(cosim::Time time) {
 
 }  // namespace
 
-void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
+void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const DecodeWatch& watch) {
     std::map<std::string, Ends> ends;
     trace.for_each_checked([&](const cosim::TraceRow& row) {
+        if (watch.first) watch.first(row);
         const auto* frame = std::get_if<cosim::UartFrame>(&row.payload);
         if (frame == nullptr) return;
         Ends& of = ends[row.link];
@@ -56,6 +57,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
     IrcomDecoder ircom(take);
     RecordedTrace::Cursor cursor(trace);
     while (const auto row = cursor.next()) {
+        if (watch.second) watch.second(*row);
         while (const FaultMark* mark = faults.next(row->time))
             decode_mark(*mark, take);
         if (const auto* frame = std::get_if<cosim::UartFrame>(&row->payload))

@@ -27,8 +27,14 @@ struct DecodedFrame {
 
 using TakeFrame = std::function<void(const DecodedFrame&)>;
 
+/// Who looks on while a trace is decoded, which is read twice: rows of the first reading, then those of the
+/// second beside the frames. Either may be empty; what one throws ends the decoding.
+struct DecodeWatch {
+    std::function<void(const cosim::TraceRow&)> first, second;
+};
+
 /// Hands over frames in the order in which they were complete.
-void decode_trace(const RecordedTrace& trace, const TakeFrame& take);
+void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const DecodeWatch& watch = {});
 
 /// One line each, without the line end.
 std::string to_text(const DecodedFrame& frame);
