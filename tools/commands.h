@@ -18,6 +18,7 @@ void declare_step(Command& app, int& status);
 void declare_asm(Command& app, int& status);
 void declare_disasm(Command& app, int& status);
 void declare_trace(Command& app, int& status);
+void declare_view(Command& app, int& status);
 void declare_frames(Command& app, int& status);
 void declare_faults(Command& app, int& status);
 void declare_experiment(Command& app, int& status);
@@ -41,6 +42,7 @@ inline constexpr std::array kCommands{
     declare_asm,
     declare_disasm,
     declare_trace,
+    declare_view,
     declare_frames,
     declare_faults,
     declare_experiment,

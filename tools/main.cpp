@@ -25,7 +25,7 @@ constexpr std::array kHeadings{
     Heading{"exec", "Run"}, Heading{"import", "Run"},
     Heading{"step", "Chips and images"}, Heading{"asm", "Chips and images"}, Heading{"disasm", "Chips and images"},
     Heading{"upload", "Chips and images"},
-    Heading{"trace", "Look at what was recorded"}, Heading{"frames", "Look at what was recorded"},
+    Heading{"view", "Look at what was recorded"}, Heading{"trace", "Look at what was recorded"}, Heading{"frames", "Look at what was recorded"},
     Heading{"faults", "Faults and measurements"}, Heading{"experiment", "Faults and measurements"}, Heading{"gap", "Faults and measurements"},
     Heading{"bench", "Faults and measurements"}, Heading{"test", "Faults and measurements"},
     Heading{"help", "Help"}, Heading{"version", "Help"}};

@@ -35,7 +35,7 @@ Includes includes() {
     for (const char* top :
          {"base",          "bench", "benchmark",  "campaigns", "cosim",   "debug",     "emu",
           "ends",          "gap",   "linuxboard", "missions",  "physics", "protocols", "replay",
-          "reproductions", "run",   "scenarios",  "selftest",  "tools",   "traces"})
+          "reproductions", "run",   "scenarios",  "selftest",  "tools",   "traces",    "view"})
         for (const std::string& file : layers::files_below(top)) {
             if (!layers::is_code(file)) continue;
             for (const std::string& included : layers::includes_of(file)) {

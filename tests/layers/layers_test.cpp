@@ -75,6 +75,7 @@ const std::vector<std::string> kFolders = {
     "debug",
     "ends",
     "traces",
+    "view",
     "run/files",
     "run/mission",
     "run/description",
@@ -174,9 +175,10 @@ TEST_CASE("folders depend downward only") {
     const fs::path source = PUCKLOOP_SOURCE;
     std::set<std::string> upward;
     int files = 0;
-    for (const char* top : {"base", "protocols", "cosim", "emu", "physics", "missions", "scenarios",
-                            "linuxboard", "debug", "ends", "traces", "run", "bench", "replay", "campaigns",
-                            "reproductions", "benchmark", "selftest", "tools"}) {
+    for (const char* top :
+         {"base",       "protocols", "cosim",         "emu",       "physics",  "missions", "scenarios",
+          "linuxboard", "debug",     "ends",          "traces",    "view",     "run",      "bench",
+          "replay",     "campaigns", "reproductions", "benchmark", "selftest", "tools"}) {
         for (const auto& entry : fs::recursive_directory_iterator(source / top)) {
             const std::string extension = entry.path().extension().string();
             if (extension != ".h" && extension != ".cpp") continue;

@@ -90,7 +90,7 @@ TEST_CASE("every room of the project has a README that the map names") {
     for (const char* room :
          {"base",          "bench", "benchmark",  "campaigns", "cosim",   "debug",     "emu",
           "ends",          "gap",   "linuxboard", "missions",  "physics", "protocols", "replay",
-          "reproductions", "run",   "scenarios",  "selftest",  "tools",   "traces"}) {
+          "reproductions", "run",   "scenarios",  "selftest",  "tools",   "traces",    "view"}) {
         INFO(room);
         CHECK(std::filesystem::exists(root / room / "README.md"));
         CHECK(map.find("(../" + std::string(room) + "/README.md)") != std::string::npos);

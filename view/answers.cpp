@@ -1,0 +1,117 @@
+#include "view/answers.h"
+
+#include "view/bytes.h"
+#include "view/page_parts.h"
+
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <span>
+#include <vector>
+
+namespace puckloop::view {
+
+namespace {
+
+constexpr const char* kJson = "application/json; charset=utf-8";
+constexpr const char* kBinary = "application/octet-stream";
+
+std::optional<std::size_t> number_of(std::string_view text) {
+    std::size_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, value);
+    if (text.empty() || at != end || error != std::errc()) return std::nullopt;
+    return value;
+}
+
+/// The value of the only parameter, which has to be called `name`.
+std::optional<std::string_view> parameter(std::string_view query, std::string_view name) {
+    if (query.size() <= name.size() || !query.starts_with(name) || query[name.size()] != '=' ||
+        query.find('&') != std::string_view::npos)
+        return std::nullopt;
+    return query.substr(name.size() + 1);
+}
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+}  // namespace
+
+std::optional<std::string> unescaped(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '+') {
+            out += ' ';
+        } else if (text[i] != '%') {
+            out += text[i];
+        } else {
+            const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+            const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
+            if (high < 0 || low < 0) return std::nullopt;
+            out += static_cast<char>(high * 16 + low);
+            i += 2;
+        }
+    }
+    return out;
+}
+
+std::optional<Content> Answers::texts(std::string_view query) const {
+    const auto list = parameter(query, "numbers");
+    if (!list) return std::nullopt;
+    std::vector<std::size_t> numbers;
+    std::string_view rest = *list;
+    while (true) {
+        const std::size_t comma = rest.find(',');
+        const auto number = number_of(rest.substr(0, comma));
+        if (!number || numbers.size() >= kMostTexts) return std::nullopt;
+        numbers.push_back(*number);
+        if (comma == std::string_view::npos) break;
+        rest.remove_prefix(comma + 1);
+    }
+    const nlohmann::json json = events_.table().texts(numbers);
+    return Content{kJson, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
+std::optional<Content> Answers::find(std::string_view query) const {
+    const auto text = parameter(query, "text");
+    const auto part = text ? unescaped(*text) : std::nullopt;
+    if (!part || part->empty() || part->size() > kLongestSearch) return std::nullopt;
+    std::string out;
+    append_numbers(out, std::span<const std::uint32_t>(events_.table().find(*part, kMostFound)));
+    return Content{kBinary, std::move(out)};
+}
+
+std::optional<Content> Answers::get(std::string_view target) const {
+    const std::size_t mark = target.find('?');
+    const std::string_view name = target.substr(0, mark);
+    const std::string_view query =
+        mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+    if (query.empty() && mark == std::string_view::npos) {
+        if (name.empty()) return Content{"text/html; charset=utf-8", std::string(page_html())};
+        if (name == "page.js") return Content{"text/javascript; charset=utf-8", std::string(page_script())};
+        if (name == "page.css") return Content{"text/css; charset=utf-8", std::string(page_style())};
+        if (name == "head") return Content{kJson, recording_.head()};
+        if (name == "status") return Content{kJson, events_.status()};
+        if (name == "poses") return Content{kBinary, recording_.poses()};
+        if (name == "beams") return Content{kBinary, events_.beams()};
+        return std::nullopt;
+    }
+    if (name == "texts") return texts(query);
+    if (name == "find") return find(query);
+    const bool sensors = name == "sensors";
+    const auto value = parameter(query, sensors ? "robot" : "from");
+    const auto number = value ? number_of(*value) : std::nullopt;
+    if (!number) return std::nullopt;
+    if (sensors)
+        return *number < recording_.robots() ? std::optional(Content{kBinary, recording_.sensors(*number)})
+                                             : std::nullopt;
+    if (name == "events") return Content{kBinary, events_.table().block(*number, kMostEvents)};
+    if (name == "leds") return Content{kBinary, events_.leds(*number, kMostEvents)};
+    return std::nullopt;
+}
+
+}  // namespace puckloop::view

@@ -1,0 +1,44 @@
+#pragma once
+// What a page asks for and gets: the parts of the page itself, and what was derived from the folder. Nothing
+// else has an address, so no address leads to a file.
+
+#include "view/read_events.h"
+#include "view/recording.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace puckloop::view {
+
+struct Content {
+    std::string type;  ///< media type
+    std::string body;
+};
+
+class Answers {
+  public:
+    /// Both must outlive it.
+    Answers(const Recording& recording, const EventReader& events) : recording_(recording), events_(events) {}
+
+    /// `target` is what follows the token: "", "page.js", "events?from=0". Nothing: there is no such thing,
+    /// or the numbers in it are none. Throws RunError for damaged files.
+    std::optional<Content> get(std::string_view target) const;
+
+    static constexpr std::size_t kMostEvents = 200'000;  ///< of an answer
+    static constexpr std::size_t kMostTexts = 500;
+    static constexpr std::size_t kMostFound = 100'000;
+    static constexpr std::size_t kLongestSearch = 200;  ///< bytes
+
+  private:
+    std::optional<Content> texts(std::string_view query) const;
+    std::optional<Content> find(std::string_view query) const;
+
+    const Recording& recording_;
+    const EventReader& events_;
+};
+
+/// "%2e" and "+" as they are meant; nothing for a broken escape.
+std::optional<std::string> unescaped(std::string_view text);
+
+}  // namespace puckloop::view

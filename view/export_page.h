@@ -1,0 +1,22 @@
+#pragma once
+// A recorded run as one HTML file: page and data together, for any browser, without puckloop and without a
+// network.
+
+#include "view/read_events.h"
+#include "view/recording.h"
+
+#include <cstddef>
+#include <string>
+
+namespace puckloop::view {
+
+/// Waits for `events`. Data are compressed (gzip) and in base 64. Throws RunError where the file would be
+/// larger than `most` bytes, and what EventReader::wait() throws.
+std::string exported_page(const Recording& recording, EventReader& events, std::size_t most = 256U << 20);
+
+/// As RFC 4648 has it, with padding.
+std::string base64(std::string_view bytes);
+/// gzip; throws RunError.
+std::string compressed(std::string_view bytes);
+
+}  // namespace puckloop::view

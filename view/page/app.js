@@ -1,0 +1,303 @@
+// Joins the parts: reads the run, keeps the time, hears keys and buttons, draws when something has changed.
+import { ArenaView } from './arena.js';
+import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors } from './model.js';
+import { palette } from './palette.js';
+import { Panel } from './panel.js';
+import { makeSource } from './source.js';
+import { TimelineView } from './timeline.js';
+
+const element = (id) => document.getElementById(id);
+const pollMilliseconds = 250, recentMilliseconds = 150;
+
+class App {
+  constructor() {
+    this.source = makeSource();
+    this.playing = false;
+    this.dirty = true;
+    this.selectedEvent = -1;
+    this.found = null;  // numbers of events that the search text is in, or null
+    this.dark = matchMedia('(prefers-color-scheme: dark)').matches;
+  }
+
+  async begin() {
+    const head = await this.source.head();
+    const paths = parsePoses(await this.source.poses(), head.paths);
+    this.run = { head, paths, leds: new Leds(), events: new Events(), beams: null, sensors: null, tracks: [], rows: [],
+      now: 0, duration: Math.max(head.duration_s, 1e-3), redraw: () => { this.dirty = true; },
+      sensorsOf: async (robot) => parseSensors(await this.source.sensors(robot), head.sensors) };
+    const redraw = this.run.redraw;
+    this.arena = new ArenaView(element('arena'), this.run, (robot) => this.choose(robot), redraw);
+    this.timeline = new TimelineView(element('timeline'), this.run, (time, number) => this.jump(time, number), redraw);
+    this.panel = new Panel(element('panel'), this.run, this.source, (robot) => this.choose(robot),
+      (time, number) => this.jump(time, number));
+    this.fill();
+    this.listen();
+    this.theme();
+    this.timeline.all();
+    if (head.robots > 0) this.choose(0);
+    document.body.dataset.ready = 'arena';
+    requestAnimationFrame((time) => this.frame(time));
+    await this.readEvents();
+    document.body.dataset.ready = 'all';
+  }
+
+  fill() {
+    const { head } = this.run, report = head.report;
+    const title = report ? report.scenario : 'a run';
+    element('title').textContent = title;
+    document.title = `${title} - puckloop`;
+    const outcome = element('outcome');
+    outcome.textContent = report ? `seed ${report.seed}, ${this.run.duration.toFixed(3)} s, ${report.success ? '' : 'failed: '}${report.ended_why}`
+      : `${this.run.duration.toFixed(3)} s, no report`;
+    outcome.className = report && !report.success ? 'failed' : '';
+    this.notes([...head.notes, ...(report ? report.warnings : [])]);
+    element('slider').max = this.run.duration;
+    head.stations.forEach((name, i) => element('follow').append(new Option(name, i)));
+    element('legend').replaceChildren();
+    this.legend();
+  }
+  notes(list) {
+    const notes = element('notes');
+    notes.hidden = list.length === 0;
+    notes.replaceChildren(...list.map((text) => Object.assign(document.createElement('li'), { textContent: text })));
+  }
+  legend() {
+    const colours = this.colours();
+    const part = (colour, style, text) => {
+      const line = document.createElement('i');
+      line.style.borderTopColor = colour;
+      line.style.borderTopStyle = style;
+      return [line, text];
+    };
+    const present = new Set(this.run.beams ? this.run.beams.fates : []);
+    const lost = [...present].some((fate) => fate > belowThreshold && fate !== ircomWord);
+    element('legend').hidden = present.size === 0;
+    element('legend').replaceChildren(...(present.has(0) ? part(colours.delivered, 'solid', 'delivered') : []),
+      ...(lost ? part(colours.failed, 'dashed', 'lost') : []),
+      ...(present.has(belowThreshold) ? part(colours.dim, 'dashed', 'out of reach') : []),
+      ...(present.has(ircomWord) ? part(colours.ircom, 'dotted', 'IRcom') : []));
+  }
+  colours() { return palette(this.dark); }
+  theme() {
+    document.documentElement.classList.toggle('dark', this.dark);
+    this.legend();
+    this.run.redraw();
+  }
+
+  async readEvents() {
+    const { run } = this;
+    for (;;) {
+      const status = await this.source.status();
+      run.tracks = status.tracks;
+      let more = run.events.count < status.events || run.events.generation !== status.generation;
+      while (more) {
+        more = run.events.append(await this.source.events(run.events.count));
+        this.rows();
+        run.redraw();
+      }
+      while (run.leds.count < status.leds && run.leds.append(await this.source.leds(run.leds.count))) run.redraw();
+      if (status.done || status.beams > (run.beams ? run.beams.begins.length : 0)) {
+        run.beams = parseBeams(await this.source.beams());
+        this.legend();
+      }
+      this.rows();
+      run.redraw();
+      element('progress').value = status.progress;
+      element('progress').title = status.reading;
+      document.body.dataset.events = run.events.count;
+      if (status.done) {
+        element('progress').hidden = true;
+        const notes = [...run.head.notes, ...(run.head.report ? run.head.report.warnings : [])];
+        if (status.trouble) notes.unshift(`not everything could be read: ${status.trouble}`);
+        if (status.left_out > 0) notes.push(`${status.left_out} frames in which nothing is wrong are left out, so that the page stays quick`);
+        if (status.leds_left_out > 0) notes.push(`${status.leds_left_out} changes of LEDs are left out`);
+        this.notes(notes);
+        return;
+      }
+      await new Promise((resolve) => setTimeout(resolve, pollMilliseconds));
+    }
+  }
+  /** Tracks in the order of the robots, those of nobody last; in each robot by name. */
+  rows() {
+    const { tracks, head } = this.run;
+    const place = (track) => { const i = head.stations.indexOf(track.robot); return i < 0 ? 1e9 : i; };
+    this.run.rows = tracks.map((_, i) => i).sort((a, b) => place(tracks[a]) - place(tracks[b])
+      || (tracks[a].name < tracks[b].name ? -1 : 1));
+    const chooser = element('find-track');
+    if (chooser.options.length === tracks.length + 1) return;
+    const before = chooser.value;
+    chooser.replaceChildren(new Option('all tracks', -1), ...this.run.rows.map((i) => new Option(tracks[i].name, i)));
+    chooser.value = before;
+  }
+
+  choose(robot) {
+    this.robot = robot;
+    this.panel.select(robot).catch((error) => this.trouble(error));
+    if (Number(element('follow').value) >= 0) element('follow').value = robot;
+    document.body.dataset.robot = this.run.head.stations[robot];
+    this.run.redraw();
+  }
+  seek(time) {
+    this.run.now = Math.min(Math.max(time, 0), this.run.duration);
+    element('slider').value = this.run.now;
+    element('time').textContent = `${this.run.now.toFixed(this.timeline.to - this.timeline.from < 0.5 ? 6 : 3)} s`;
+    document.body.dataset.time = this.run.now.toFixed(6);
+    this.run.redraw();
+  }
+  jump(time, number) {
+    this.play(false);
+    this.seek(time);
+    this.timeline.show(time);
+    this.select(number).catch((error) => this.trouble(error));
+  }
+  async select(number) {
+    this.selectedEvent = number;
+    this.timeline.selected = number;
+    this.run.redraw();
+    if (number < 0) {
+      element('detail').textContent = '';
+      element('detail').className = '';
+      return;
+    }
+    const { events, tracks, head } = this.run;
+    const track = tracks[events.tracks[number]], failed = (events.flags[number] & 1) !== 0;
+    const robot = head.stations.indexOf(track.robot);
+    if (robot >= 0 && robot < head.robots && robot !== this.robot) this.choose(robot);
+    const [text] = await this.source.texts([number]);
+    if (this.selectedEvent !== number) return;
+    const took = events.durations[number] > 0 ? `, ${(1e3 * events.durations[number]).toFixed(3)} ms` : '';
+    element('detail').textContent = `${events.begins[number].toFixed(6)} s${took}  ${track.name}  ${text}`;
+    element('detail').className = failed ? 'failed' : '';
+  }
+  play(on) {
+    if (on && this.run.now >= this.run.duration) this.seek(0);
+    this.playing = on;
+    element('play').textContent = on ? '❚❚' : '▶';
+    document.body.dataset.playing = on;
+    this.before = null;
+  }
+
+  async search() {
+    const text = element('find').value.trim();
+    const asked = (this.asked = (this.asked || 0) + 1);
+    const numbers = text ? await this.source.find(text) : null;
+    if (asked !== this.asked) return;
+    this.found = numbers;
+    const list = this.matches();
+    this.timeline.marks = list.map((number) => this.run.events.begins[number]);
+    element('found').textContent = text ? `${list.length} found` : '';
+    this.run.redraw();
+  }
+  /** Of the search text: numbers in the order of time, of the chosen tracks. */
+  matches() {
+    const { events } = this.run, track = Number(element('find-track').value), failed = element('find-failed').checked;
+    return [...(this.found || [])].filter((n) => n < events.count && (track < 0 || events.tracks[n] === track)
+      && (!failed || (events.flags[n] & 1))).sort((a, b) => events.begins[a] - events.begins[b] || a - b);
+  }
+  async step(forward) {
+    const { events } = this.run;
+    let number = -1;
+    if (element('find').value.trim()) {
+      await this.search();
+      const list = this.matches(), at = list.indexOf(this.selectedEvent);
+      if (at >= 0) number = list[at + (forward ? 1 : -1)] ?? -1;
+      else if (forward) number = list.find((n) => events.begins[n] > this.run.now) ?? -1;
+      else number = list.findLast((n) => events.begins[n] < this.run.now) ?? -1;
+    } else {
+      const track = Number(element('find-track').value);
+      number = events.next(this.run.now, forward, (index) => track < 0 || index === track,
+        element('find-failed').checked || track < 0);
+    }
+    element('found').textContent = number < 0 ? `no ${forward ? 'later' : 'earlier'} one` : element('found').textContent.replace(/^no .*/, '');
+    if (number >= 0) this.jump(events.begins[number], number);
+  }
+  marker(next) {
+    const { markers } = this.timeline, now = this.run.now;
+    if (next) {
+      if (markers.length) this.jump(markers.find((time) => time > now + 1e-9) ?? markers[0], -1);
+      return;
+    }
+    const there = markers.findIndex((time) => Math.abs(time - now) < 1e-6);
+    if (there >= 0) markers.splice(there, 1); else markers.push(now);
+    markers.sort((a, b) => a - b);
+    this.run.redraw();
+  }
+
+  listen() {
+    const on = (id, what, act) => element(id).addEventListener(what, (event) => {
+      Promise.resolve(act(event)).catch((error) => this.trouble(error));
+    });
+    on('play', 'click', () => this.play(!this.playing));
+    on('slider', 'input', () => { this.seek(Number(element('slider').value)); this.timeline.show(this.run.now); });
+    on('theme', 'click', () => { this.dark = !this.dark; this.theme(); });
+    on('arena-fit', 'click', () => { element('follow').value = -1; this.arena.fit(); this.run.redraw(); });
+    for (const id of ['follow', 'trail', 'beams']) on(id, 'change', () => this.run.redraw());
+    on('find', 'input', () => this.search());
+    for (const id of ['find-track', 'find-failed']) on(id, 'change', () => this.search());
+    on('find-next', 'click', () => this.step(true));
+    on('find-back', 'click', () => this.step(false));
+    on('help-open', 'click', () => element('help').showModal());
+    addEventListener('resize', () => this.run.redraw());
+    addEventListener('keydown', (event) => this.key(event));
+  }
+  key(event) {
+    const target = event.target;
+    if (target.id === 'find' && event.key === 'Enter') {
+      event.preventDefault();
+      return this.step(!event.shiftKey).catch((error) => this.trouble(error));
+    }
+    if (target.id === 'find' || target.tagName === 'SELECT' || event.ctrlKey || event.metaKey || element('help').open) {
+      if (target.id === 'find' && event.key === 'Escape') target.blur();
+      return undefined;
+    }
+    const small = event.altKey ? 0.001 : event.shiftKey ? 1 : 0.1;
+    const move = (by) => { this.play(false); this.seek(this.run.now + by); this.timeline.show(this.run.now); };
+    const keys = {
+      ' ': () => this.play(!this.playing), ArrowLeft: () => move(-small), ArrowRight: () => move(small),
+      Home: () => move(-1e9), End: () => move(1e9), n: () => this.step(true), N: () => this.step(false),
+      '+': () => this.timeline.zoom(0.6, this.run.now), '-': () => this.timeline.zoom(1 / 0.6, this.run.now),
+      0: () => this.timeline.all(), f: () => element('arena-fit').click(), m: () => this.marker(false),
+      M: () => this.marker(true), '/': () => element('find').focus(), '?': () => element('help').showModal(),
+    };
+    const act = keys[event.key];
+    if (!act) return undefined;
+    event.preventDefault();
+    return Promise.resolve(act()).catch((error) => this.trouble(error));
+  }
+  trouble(error) {
+    document.body.dataset.trouble = error.message;
+    element('detail').textContent = `${error.message} (is \`puckloop view\` still on?)`;
+    element('detail').className = 'failed';
+  }
+
+  frame(time) {
+    requestAnimationFrame((next) => this.frame(next));
+    const { run } = this, speed = Number(element('speed').value);
+    if (this.playing) {
+      if (this.before !== null) this.seek(run.now + (speed * Math.min(time - this.before, 200)) / 1000);
+      this.before = time;
+      if (run.now >= run.duration) this.play(false);
+      this.timeline.show(run.now);
+    }
+    if (!this.dirty) return;
+    this.dirty = false;
+    const colours = this.colours();
+    this.arena.draw(colours, { follow: Number(element('follow').value), trail: Number(element('trail').value),
+      beams: element('beams').checked, persist: Math.max(0.1 * speed, 0.02), selected: this.robot });
+    this.timeline.draw(colours);
+    this.panel.draw(colours, Math.max(0, this.timeline.from), Math.min(this.timeline.to, run.duration));
+    if (!(time - this.recentAt < recentMilliseconds)) {
+      this.recentAt = time;
+      this.panel.refreshRecent().catch((error) => this.trouble(error));
+    } else if (!this.recentTimer) {
+      this.recentTimer = setTimeout(() => {
+        this.recentTimer = null;
+        this.panel.refreshRecent().catch((error) => this.trouble(error));
+      }, recentMilliseconds);
+    }
+  }
+}
+
+const app = new App();
+window.puckloopView = app;  // for tests, and for who looks behind the page
+app.begin().catch((error) => app.trouble(error));

@@ -1,0 +1,80 @@
+#pragma once
+// Reads the events of a results folder in a thread of its own: frames of all links by protocol, what became
+// of range-and-bearing frames, IRcom words, faults, resets, lines of logs, changes of LEDs.
+
+#include "view/event_table.h"
+#include "view/recording.h"
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace puckloop::view {
+
+class EventReader {
+  public:
+    /// Begins to read; `recording` must outlive it. `most`: of EventTable.
+    explicit EventReader(const Recording& recording, std::size_t most = EventTable::kMost);
+    /// Stops reading.
+    ~EventReader();
+    EventReader(const EventReader&) = delete;
+    EventReader& operator=(const EventReader&) = delete;
+
+    const EventTable& table() const { return table_; }
+    /// Until everything is read. Throws what was wrong, if it was: InputError, RunError.
+    void wait();
+
+    /// JSON: generation, events, left_out, tracks, done, progress (0..1), what is read now, what was wrong.
+    std::string status() const;
+    /// LEDs from change `first` on: four 32-bit numbers (first, how many follow, how many in all, 0), then
+    /// times (64-bit floats, s), robots (16 bits), LEDs (8 bits: 0..7 ring, 8 body, 9 front), values (8
+    /// bits).
+    std::string leds(std::size_t first, std::size_t most) const;
+    /// Light between stations: two 32-bit numbers (count, 0), then begins (64-bit floats, s), durations
+    /// (32-bit floats), senders, receivers (16 bits each), fates (8 bits).
+    std::string beams() const;
+
+    static constexpr std::size_t kMostLeds = 4'000'000;
+
+    /// Fates of beams: delivered, then lost by Cause of traces/rab_losses/losses.h, and a word of IRcom.
+    static constexpr std::uint8_t kDelivered = 0, kIrcomWord = 32;
+
+  private:
+    struct Stopped {};
+    void run() noexcept;
+    void read_all();
+    void read_logs();
+    void read_resets();
+    void read_trace();
+    void read_rab();
+    void read_ircom();
+    void led(const std::string& from, const std::string& signal, double time, double value);
+    void check_stop() const {
+        if (stop_) throw Stopped{};
+    }
+    std::string robot_of(const std::string& name) const;
+    std::size_t station(const std::string& name) const;
+
+    const Recording& recording_;
+    EventTable table_;
+    std::atomic<bool> stop_ = false, done_ = false;
+    std::atomic<double> progress_ = 0.0;
+    mutable std::mutex mutex_;
+    std::string phase_;
+    std::string trouble_;
+    std::exception_ptr error_;
+    std::vector<double> led_times_;
+    std::vector<std::uint16_t> led_robots_;
+    std::vector<std::uint8_t> leds_, led_values_;
+    std::size_t leds_left_out_ = 0;
+    std::vector<double> beam_begins_;
+    std::vector<float> beam_durations_;
+    std::vector<std::uint16_t> beam_senders_, beam_receivers_;
+    std::vector<std::uint8_t> beam_fates_;
+    std::thread thread_;
+};
+
+}  // namespace puckloop::view

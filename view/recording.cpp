@@ -1,0 +1,237 @@
+#include "view/recording.h"
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "physics/render/arena_file.h"
+#include "physics/world/booth_record.h"
+#include "view/arena_json.h"
+#include "view/bytes.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <span>
+
+namespace puckloop::view {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr const char* kFolder = "the results folder of a run (`puckloop run SCENARIO --out DIR`)";
+constexpr int kReportFormat = 1;         // run/report/report.h
+constexpr std::size_t kMostNoted = 100;  // warnings of a report that the page lists
+
+bool is_there(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string string_of(const ordered_json& json, const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+Recording::Recording(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    if (!fs::exists(folder_, error)) throw InputError(folder_.string(), "", "no such folder", kFolder);
+    if (!fs::is_directory(folder_, error)) throw InputError(folder_.string(), "", "is no folder", kFolder);
+    if (!is_there(folder_ / "trajectory.csv") && !is_there(folder_ / "trace.csv"))
+        throw InputError(folder_.string(), "", "has neither trajectory.csv nor trace.csv", kFolder);
+    read_report();
+    read_arena();
+    read_paths();
+    read_booths();
+    if (!is_there(folder_ / "trace.csv"))
+        notes_.emplace_back("trace.csv is not there, so no frames are shown: run the scenario again");
+}
+
+void Recording::read_report() {
+    const fs::path file = folder_ / "report.json";
+    const std::string text = text_of(file);
+    if (text.empty()) {
+        notes_.emplace_back(
+            "report.json is not there: the run goes on, or was killed. What it recorded is shown");
+        return;
+    }
+    const auto json = ordered_json::parse(text, nullptr, false);
+    if (!json.is_object()) throw InputError(file.string(), "", "is damaged", "run the scenario again");
+    const auto format = json.find("format");
+    if (format == json.end() || !format->is_number_integer() || *format != kReportFormat)
+        throw InputError(file.string(), "format",
+                         format == json.end() ? "is not there" : "is " + format->dump(),
+                         fmt::format("{}: run the scenario again with this puckloop, or view it with the one "
+                                     "that recorded it",
+                                     kReportFormat));
+    if (const auto end = json.find("simulated_s"); end != json.end() && end->is_number())
+        duration_s_ = std::clamp(end->get<double>(), 0.0, 9e6);
+    ordered_json shown{{"scenario", fs::path(string_of(json, "scenario")).filename().string()},
+                       {"ended_why", string_of(json, "ended_why")},
+                       {"trace_sha256", string_of(json, "trace_sha256")}};
+    for (const char* key : {"seed", "success", "simulated_s", "wall_s"})
+        if (json.contains(key)) shown[key] = json[key];
+    ordered_json warnings = ordered_json::array();
+    if (const auto all = json.find("warnings"); all != json.end() && all->is_array())
+        for (const auto& one : *all)
+            if (warnings.size() < kMostNoted && one.is_string()) warnings.push_back(one);
+    if (const auto all = json.find("failures"); all != json.end() && all->is_array())
+        for (const auto& one : *all)
+            if (warnings.size() < kMostNoted && one.is_object())
+                warnings.push_back(fmt::format("{}: {}", string_of(one, "node"), string_of(one, "text")));
+    shown["warnings"] = warnings;
+    report_ = shown.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+void Recording::read_arena() {
+    const fs::path file = folder_ / "arena.json";
+    if (!is_there(file)) {
+        notes_.emplace_back(
+            "arena.json is not there, so walls and things are not drawn: an older puckloop made "
+            "this folder; run the scenario again");
+        return;
+    }
+    const physics::World world = physics::read_arena_file(file);
+    arena_ = arena_json(world);
+    for (const physics::Robot& robot : world.robots)
+        stations_.push_back(robot.name);
+    robots_ = stations_.size();
+    for (const physics::Booth& booth : world.booths)
+        stations_.push_back(booth.name);
+}
+
+void Recording::read_paths() {
+    const fs::path file = folder_ / "trajectory.csv";
+    physics::Paths robots;
+    if (is_there(file))
+        robots = physics::read_paths(file);
+    else
+        notes_.emplace_back("trajectory.csv is not there, so robots are not drawn: run the scenario again");
+    if (arena_.empty()) {
+        for (const auto& [name, points] : robots)
+            stations_.push_back(name);
+        robots_ = stations_.size();
+    }
+    robot_paths_ = robots.size();
+    paths_ = std::move(robots);
+    if (is_there(folder_ / "objects.csv")) {
+        physics::Paths objects = physics::read_paths(folder_ / "objects.csv");
+        paths_.insert(paths_.end(), std::make_move_iterator(objects.begin()),
+                      std::make_move_iterator(objects.end()));
+    }
+    for (const auto& [name, points] : paths_)
+        if (!points.empty()) duration_s_ = std::max(duration_s_, points.back().seconds);
+}
+
+void Recording::read_booths() {
+    if (!is_there(folder_ / "tams.csv")) return;
+    ordered_json all = ordered_json::object();
+    for (const physics::BoothColours& booth : physics::read_booth_colours(folder_ / "tams.csv")) {
+        ordered_json changes = ordered_json::array();
+        std::array<double, 3> last{-1.0, -1.0, -1.0};
+        for (const physics::BoothColour& colour : booth.colours) {
+            const std::array now{colour.red, colour.green, colour.blue};
+            if (now == last) continue;
+            last = now;
+            changes.push_back({colour.seconds, colour.red, colour.green, colour.blue});
+        }
+        all[booth.name] = std::move(changes);
+    }
+    booths_ = all.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::vector<std::string> Recording::sensor_columns() const {
+    std::ifstream in(folder_ / "sensors.csv");
+    std::string line;
+    std::vector<std::string> columns;
+    if (!in || !std::getline(in, line)) return columns;
+    for (const std::string_view cell : csv_cells(line, ','))
+        columns.emplace_back(cell);
+    if (columns.size() < 3 || columns[0] != "t_s" || columns[1] != "robot") return {};
+    columns.erase(columns.begin(), columns.begin() + 2);
+    return columns;
+}
+
+std::string Recording::head() const {
+    ordered_json head{{"format", 1}, {"duration_s", duration_s_}, {"notes", notes_}};
+    head["report"] = report_.empty() ? ordered_json() : ordered_json::parse(report_);
+    head["arena"] = arena_.empty() ? ordered_json() : ordered_json::parse(arena_);
+    head["stations"] = stations_;
+    head["robots"] = robots_;
+    ordered_json paths = ordered_json::array();
+    for (std::size_t i = 0; i < paths_.size(); ++i)
+        paths.push_back({{"name", paths_[i].first}, {"robot", i < robot_paths_}});
+    head["paths"] = paths;
+    head["booths"] = booths_.empty() ? ordered_json::object() : ordered_json::parse(booths_);
+    head["sensors"] = sensor_columns();
+    return head.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string Recording::poses() const {
+    std::string out;
+    for (const auto& [name, points] : paths_) {
+        append_number(out, static_cast<std::uint32_t>(points.size()));
+        for (const auto part : {&physics::PathPoint::seconds, &physics::PathPoint::x, &physics::PathPoint::y,
+                                &physics::PathPoint::heading})
+            for (const physics::PathPoint& point : points)
+                append_number(out, static_cast<float>(point.*part));
+    }
+    return out;
+}
+
+std::string Recording::sensors(std::size_t robot) const {
+    const std::size_t columns = sensor_columns().size();
+    std::vector<std::vector<float>> values(columns + 1);
+    const fs::path file = folder_ / "sensors.csv";
+    std::ifstream in(file);
+    std::string line;
+    const std::string name = robot < robots_ ? stations_[robot] : std::string();
+    // Every so many-th row: when there are too many, every second one of those so far goes.
+    std::size_t stride = 1, seen = 0;
+    if (columns > 0 && !name.empty()) std::getline(in, line);
+    for (std::size_t number = 2; columns > 0 && !name.empty() && std::getline(in, line); ++number) {
+        const std::size_t first = line.find(',');
+        const std::size_t second = first == std::string::npos ? first : line.find(',', first + 1);
+        const bool broken = second == std::string::npos;
+        if (!broken && std::string_view(line).substr(first + 1, second - first - 1) != name) continue;
+        if (!broken && seen++ % stride != 0) continue;
+        const auto cells = csv_cells(line, ',');
+        std::vector<float> row;
+        double value = 0.0;
+        for (std::size_t i = 0; !broken && i < cells.size(); ++i)
+            if (i != 1 && csv_number(cells[i], value)) row.push_back(static_cast<float>(value));
+        if (row.size() != columns + 1) {
+            if (in.peek() == std::ifstream::traits_type::eof()) break;  // the run was killed
+            throw RunError(fmt::format("{}: line {}: not a row of sensor values", file.string(), number));
+        }
+        for (std::size_t i = 0; i < row.size(); ++i)
+            values[i].push_back(row[i]);
+        if (values[0].size() < kMostRows) continue;
+        stride *= 2;
+        for (auto& column : values) {
+            for (std::size_t i = 0; 2 * i < column.size(); ++i)
+                column[i] = column[2 * i];
+            column.resize((column.size() + 1) / 2);
+        }
+    }
+    std::string out;
+    append_number(out, static_cast<std::uint32_t>(values[0].size()));
+    append_number(out, static_cast<std::uint32_t>(values.size()));
+    for (const auto& column : values)
+        append_numbers(out, std::span(column));
+    return out;
+}
+
+}  // namespace puckloop::view

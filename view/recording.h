@@ -1,0 +1,55 @@
+#pragma once
+// The results folder of a run, as a page shows it: what is known at once, which is the arena, who was where
+// when, and what the folder lacks. What takes long to read is read_events.h's.
+
+#include "physics/render/path_file.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::view {
+
+class Recording {
+  public:
+    /// Throws InputError for what is no results folder, for damaged files and for those of another version,
+    /// with the remedy. Files that a run which was killed could not write are notes.
+    explicit Recording(std::filesystem::path folder);
+
+    const std::filesystem::path& folder() const { return folder_; }
+    /// Robots, then TAMs: beams name their ends by the place in this list.
+    const std::vector<std::string>& stations() const { return stations_; }
+    std::size_t robots() const { return robots_; }
+    double duration_s() const { return duration_s_; }
+    /// Each says what is missing and the remedy.
+    const std::vector<std::string>& notes() const { return notes_; }
+
+    /// JSON: title, seed, duration, how it ended, notes, arena, stations, TAMs' colours, columns of sensors.
+    std::string head() const;
+    /// For each path of head()'s "paths", in that order: the number of points (32 bits), then times (s), x, y
+    /// (m) and headings (rad), 32-bit floats; little-endian.
+    std::string poses() const;
+    /// Of a robot: numbers of rows and of columns (32 bits), then column by column 32-bit floats, times
+    /// first. At most kMostRows rows, every so many-th of the file. Throws RunError for damaged rows.
+    std::string sensors(std::size_t robot) const;
+
+    static constexpr std::size_t kMostRows = 20'000;
+
+  private:
+    void read_report();
+    void read_arena();
+    void read_paths();
+    void read_booths();
+    std::vector<std::string> sensor_columns() const;
+
+    std::filesystem::path folder_;
+    std::vector<std::string> notes_, stations_;
+    std::size_t robots_ = 0;
+    double duration_s_ = 0.0;
+    physics::Paths paths_;
+    std::size_t robot_paths_ = 0;          // of paths_, the first
+    std::string report_, arena_, booths_;  // JSON of head(); empty: none
+};
+
+}  // namespace puckloop::view
