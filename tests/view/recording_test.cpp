@@ -167,7 +167,7 @@ TEST_CASE("a damaged trace is reported with its line, and what was read before s
     CHECK(events.table().find("hello", 10).size() == 1);
 }
 
-TEST_CASE("random damage to any file is an error with its place or is shown; never a crash") {
+TEST_CASE("random damage to any file is an error with its place or is shown, never a crash") {
     std::mt19937 random(Catch::rngSeed());
     for (int round = 0; round < 150; ++round) {
         const fs::path folder = write_results("view_fuzz");

@@ -11,7 +11,7 @@ const groups = [
   ['microphones', 'counts', ['mic_level0', 'mic_level1', 'mic_level2']],
   ['battery', 'V', ['battery_v']],
 ];
-const recentCount = 12;
+const recentCount = 12, plotMilliseconds = 100;
 
 function changes(values) {
   return values.some((value) => value !== values[0]);
@@ -96,6 +96,14 @@ export class Panel {
       }));
     }
     if (!this.run.sensors || !this.drawn) return;
+    // Plots of an hour cost more than all the rest: ten times a second is enough, and once more at the end.
+    const wall = performance.now();
+    clearTimeout(this.later);
+    if (wall - this.plottedAt < plotMilliseconds) {
+      this.later = setTimeout(this.run.redraw, plotMilliseconds);
+      return;
+    }
+    this.plottedAt = wall;
     const i = Math.max(0, countUpTo(this.run.sensors.t, this.run.now) - 1);
     for (const { canvas, value, lines } of this.drawn) {
       const now = lines.length > 3 ? '' : lines.map(({ values }) => shortNumber(values[i])).join('  ');
