@@ -240,7 +240,7 @@ void EventReader::read_rab() {
         // Out of reach is nobody's failure.
         const bool failed = !fate.delivered && fate.cause != tools::Cause::BelowThreshold;
         table_.add(track->second, begin, duration, failed ? kFailed : std::uint8_t{0},
-                   fmt::format("range and bearing from {}, {:.1f} cm: {}", frame.sender, 100 * frame.distance,
+                   fmt::format("from {}, {:.1f} cm: {}", frame.sender, 100 * frame.distance,
                                fate.delivered ? fmt::format("delivered, fetched at {:.6f} s",
                                                             cosim::to_seconds(fate.fetched))
                                               : fmt::format("lost: {}", name_of(fate.cause))));

@@ -160,6 +160,7 @@ class App {
       return;
     }
     const { events, tracks, head } = this.run;
+    this.timeline.reveal(events.tracks[number]);
     const track = tracks[events.tracks[number]], failed = (events.flags[number] & 1) !== 0;
     const robot = head.stations.indexOf(track.robot);
     if (robot >= 0 && robot < head.robots && robot !== this.robot) this.choose(robot);

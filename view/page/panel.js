@@ -37,7 +37,7 @@ export class Panel {
     this.recent.id = 'recent';
     const heading = document.createElement('h2');
     heading.textContent = 'Latest frames and log lines';
-    this.element.append(chooser, this.table, this.plots, heading, this.recent);
+    this.element.append(chooser, this.table, heading, this.recent, this.plots);
     return this.load(robot);
   }
   async load(robot) {

@@ -44,6 +44,13 @@ export class TimelineView {
     const span = this.to - this.from;
     if (time < this.from || time > this.to) this.place(time - 0.1 * span, span);
   }
+  /** Scrolls so that a track's row is in sight. */
+  reveal(track) {
+    const y = this.run.rows.indexOf(track) * rowHeight, seen = this.canvas.clientHeight - axisHeight;
+    if (y < 0) return;
+    if (y < this.scroll || y + rowHeight > this.scroll + seen)
+      this.scroll = Math.min(Math.max(0, y - seen / 2), Math.max(0, this.run.rows.length * rowHeight - seen));
+  }
   row(py) { return Math.floor((py - axisHeight + this.scroll) / rowHeight); }
 
   listen() {
@@ -115,7 +122,6 @@ export class TimelineView {
     g.fillRect(0, 0, width, height);
     const first = Math.floor(this.scroll / rowHeight);
     const last = Math.min(this.run.rows.length, first + Math.ceil(height / rowHeight) + 1);
-    let robot = null;
     for (let row = first; row < last; ++row) {
       const y = axisHeight + row * rowHeight - this.scroll;
       const track = this.run.tracks[this.run.rows[row]];
@@ -132,8 +138,7 @@ export class TimelineView {
       const station = this.run.head.stations.indexOf(track.robot);
       g.fillStyle = station >= 0 ? colours.robot(station) : colours.dim;
       g.fillRect(0, y, 4, rowHeight);
-      g.fillStyle = track.robot !== robot ? colours.text : colours.text;
-      robot = track.robot;
+      g.fillStyle = this.selected >= 0 && this.run.events.tracks[this.selected] === this.run.rows[row] ? colours.strong : colours.text;
       g.save();
       g.beginPath();
       g.rect(0, y, namesWidth - 6, rowHeight);
