@@ -2,7 +2,7 @@
 // One I2C adapter of the Linux board (/dev/i2c-N) as bus master: transfers become phases on the robot's bus,
 // each taking its real time; the calling thread waits until the STOP.
 //
-// As in the kernel, the time-out (1 s, or what I2C_TIMEOUT sets) is that of one message of a transfer. When
+// As in i2c-omap, the time-out of 1 s is that of one message of a transfer; I2C_TIMEOUT is about retries. When
 // it runs out the call fails with ETIMEDOUT and the controller is reset, which the bus sees as a STOP.
 //
 // Deviations: 1. One byte is one phase: no bus clock jitter, no driver overhead between bytes.

@@ -17,7 +17,8 @@ namespace puckloop::shim {
 namespace {
 constexpr unsigned long kHighestAddress = 0x7f;
 constexpr unsigned long kHighestTenBitAddress = 0x3ff;
-constexpr std::uint32_t kTimeoutUnitMs = 10;
+/// OMAP_I2C_TIMEOUT of drivers/i2c/busses/i2c-omap.c.
+constexpr std::uint32_t kMessageTimeoutMs = 1000;
 /// Of i2c-omap: no quick command, no block read.
 constexpr unsigned long kFunctions =
     I2C_FUNC_I2C | (I2C_FUNC_SMBUS_EMUL & ~I2C_FUNC_SMBUS_QUICK) | I2C_FUNC_PROTOCOL_MANGLING;
@@ -98,7 +99,7 @@ int transfer(OpenFile& file, i2c_msg* messages, unsigned count) {
     wire::Request request;
     request.op = wire::Op::Transfer;
     request.handle = file.handle;
-    request.a = file.timeout_ms;
+    request.a = kMessageTimeoutMs;
     request.b = count;
     std::size_t received = 0;
     const auto done = static_cast<int>(
@@ -151,12 +152,8 @@ int i2c_ioctl(OpenFile& file, unsigned long request, void* argument, const void*
     case I2C_SMBUS:
         return smbus_ioctl(file, argument);
     case I2C_RETRIES:  // the driver retries lost arbitration only, which fails at once here
+    case I2C_TIMEOUT:  // how long it retries; a message has the driver's own time
         return value > INT_MAX ? fail(EINVAL) : 0;
-    case I2C_TIMEOUT:
-        if (value > INT_MAX) return fail(EINVAL);
-        file.timeout_ms =
-            static_cast<std::uint32_t>(std::min<unsigned long>(value * kTimeoutUnitMs, UINT32_MAX));
-        return 0;
     default:
         note("%s: ioctl 0x%lx is not supported (in %s)", file.path, request, place_of(caller));
         return fail(ENOTTY);

@@ -20,7 +20,6 @@ struct OpenFile {
     int device = -1;  ///< index into the page's list; -1: none of the node's
     // i2c-dev, per open file
     std::uint16_t slave = 0;
-    std::uint32_t timeout_ms = 1000;
     bool ten_bit = false;
     bool pec = false;
 };
