@@ -3,6 +3,7 @@
 #include "serial.h"
 #include <errno.h>
 #include <limits.h>
+#include <linux/fs.h>
 #include <linux/i2c-dev.h>
 #include <linux/i2c.h>
 #include <linux/serial.h>
@@ -78,6 +79,25 @@ static void any_terminal(int fd) { /* holds on a pty of the host too */
     GIVES(fcntl(fd, F_SETFL, O_NONBLOCK), 0);
     GIVES(read(fd, &byte, 0), 0);
     GIVES(write(fd, "", 0), 0);
+    part.iov_len = 0;
+    GIVES(pwritev2(fd, &part, 1, -1, RWF_SYNC | RWF_APPEND), 0);
+    part.iov_len = 1;
+    if (sizeof(long) == 8) GIVES(fcntl(fd, F_GETFL) & 0100000, 0100000);
+    GIVES(fcntl(fd, F_NOTIFY, 0L), 0);
+    FAILS(fcntl(fd, F_NOTIFY, (long)DN_MODIFY), ENOTDIR);
+    const struct winsize wanted = {24, 80, 0, 0};
+    struct winsize window = {0, 0, 0, 0};
+    int number = 0;
+    GIVES(ioctl(fd, TIOCSWINSZ, &wanted), 0);
+    GIVES(ioctl(fd, TIOCGWINSZ, &window), 0);
+    GIVES(window.ws_col * 100 + window.ws_row, 8024);
+    GIVES(ioctl(fd, TIOCEXCL), 0);
+    GIVES(ioctl(fd, TIOCGEXCL, &number), 0);
+    GIVES(number, 1);
+    GIVES(ioctl(fd, TIOCNXCL), 0);
+    GIVES(ioctl(fd, TIOCGEXCL, &number), 0);
+    GIVES(number, 0);
+    GIVES(ioctl(fd, FIGETBSZ, &number), 0);
     FAILS(write(fd, bad(), 5), EFAULT);
     FAILS(write(fd, nowhere, 5), EFAULT);
     FAILS(read(fd, (void*)(intptr_t)below, 5), EFAULT);

@@ -301,6 +301,7 @@ int control(int fd, int command, long argument, decltype(&::fcntl) real) {
         return lock_device(command, argument);
     case F_SETLEASE:
     case F_NOTIFY:
+        if (command == F_NOTIFY && (argument & ~static_cast<long>(DN_MULTISHOT)) == 0) return 0;
         errno = command == F_NOTIFY ? ENOTDIR : EINVAL;
         return -1;
     default:

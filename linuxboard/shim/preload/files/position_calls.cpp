@@ -41,6 +41,13 @@ bool is_device(int fd) {
     return open_file(fd) != nullptr || is_link(fd);
 }
 
+/// Of preadv2() and pwritev2(): terminals take what changes nothing for them, the others a wish for polling.
+bool takes_flags(const OpenFile& file, int flags) {
+    const int taken =
+        file.kind == OpenFile::Kind::Tty ? RWF_HIPRI | RWF_DSYNC | RWF_SYNC | RWF_APPEND : RWF_HIPRI;
+    return (flags & ~taken) == 0;
+}
+
 off_t seek(const OpenFile& file, int from) {
     if (file.kind == OpenFile::Kind::Random) return 0;
     return from < SEEK_SET || from > SEEK_HOLE ? fail(EINVAL) : fail(ESPIPE);
@@ -106,13 +113,13 @@ SHIM_EXPORT ssize_t pwritev64(int fd, const iovec* parts, int count, off64_t off
 SHIM_EXPORT ssize_t preadv2(int fd, const iovec* parts, int count, off_t offset, int flags) {
     if (is_link(fd)) return fail(EBADF);
     if (!is_device(fd)) return REAL(preadv2)(fd, parts, count, offset, flags);
-    if (flags != 0) return fail(EOPNOTSUPP);
+    if (!takes_flags(*open_file(fd), flags)) return fail(EOPNOTSUPP);
     return offset == -1 ? readv(fd, parts, count) : preadv(fd, parts, count, offset);
 }
 SHIM_EXPORT ssize_t pwritev2(int fd, const iovec* parts, int count, off_t offset, int flags) {
     if (is_link(fd)) return fail(EBADF);
     if (!is_device(fd)) return REAL(pwritev2)(fd, parts, count, offset, flags);
-    if (flags != 0) return fail(EOPNOTSUPP);
+    if (!takes_flags(*open_file(fd), flags)) return fail(EOPNOTSUPP);
     return offset == -1 ? writev(fd, parts, count) : pwritev(fd, parts, count, offset);
 }
 

@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/real.h"
 
 #include <fcntl.h>
+#include <linux/fs.h>
 #include <linux/serial.h>
 #include <sys/ioctl.h>
 #include <termios.h>
@@ -27,6 +28,17 @@ static int fail(int error) {
 }
 
 namespace {
+/// What a terminal keeps and nothing here obeys; of this process and its children to come.
+struct Kept {
+    winsize window{};
+    bool exclusive = false;
+};
+Kept& kept_of(const OpenFile& file) {
+    constexpr std::size_t kMost = 16;
+    static Kept kept[kMost];
+    return kept[static_cast<std::size_t>(std::max(file.device, 0)) % kMost];
+}
+
 /// The kernel's struct termios (asm-generic), which TCGETS and TCSETS carry, and its successor.
 struct KernelTermios {
     tcflag_t c_iflag, c_oflag, c_cflag, c_lflag;
@@ -303,19 +315,17 @@ int tty_ioctl(OpenFile& file, unsigned long request, void* argument, const void*
         return put_to_program(argument, number) ? 0 : -1;
     }
     case TIOCGEXCL:
-        return put_number(argument, 0);
+        return put_number(argument, kept_of(file).exclusive ? 1 : 0);
     case TIOCEXCL:  // without effect on a superuser, whom programs of the board run as
     case TIOCNXCL:
+        kept_of(file).exclusive = request == TIOCEXCL;
+        return 0;
     case TIOCSCTTY:
         return 0;
-    case TIOCGWINSZ: {
-        const winsize none{};
-        return put_to_program(argument, none) ? 0 : -1;
-    }
-    case TIOCSWINSZ: {
-        winsize size{};
-        return get_from_program(size, argument) ? 0 : -1;
-    }
+    case TIOCGWINSZ:
+        return put_to_program(argument, kept_of(file).window) ? 0 : -1;
+    case TIOCSWINSZ:
+        return get_from_program(kept_of(file).window, argument) ? 0 : -1;
     case TIOCGPGRP:
     case TIOCSPGRP:
     case TIOCGSID:
@@ -333,6 +343,8 @@ int device_ioctl(OpenFile& file, unsigned long request, void* argument, const vo
     mark_call("ioctl");
     charge(page().charges.device);
     switch (request) {
+    case FIGETBSZ:  // of the file system with the devices
+        return put_number(argument, 4096);
     case FIONBIO: {
         int on = 0;
         if (!get_from_program(on, argument)) return -1;
