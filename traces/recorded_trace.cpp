@@ -108,7 +108,7 @@ void RecordedTrace::for_each_checked(const std::function<void(const cosim::Trace
     }
     check_known("--link", selection_.links, links);
     check_known("--from-node", selection_.nodes, nodes);
-    if (!cursor.whole())
+    if (!cursor.whole() && selection_.warns)
         std::fprintf(stderr, "puckloop: %s: the last line is incomplete and left out\n", file_.c_str());
 }
 

@@ -20,6 +20,8 @@ struct TraceSelection {
     double until_s = 9e6;
     /// `nodes` must occur, but whatever the others sent is wanted too.
     bool nodes_only_named = false;
+    /// An incomplete last line is worth a warning: not while the file grows.
+    bool warns = true;
 
     bool wanted(const cosim::TraceRow& row) const;
 };

@@ -59,7 +59,7 @@ std::optional<std::string> unescaped(std::string_view text) {
     return out;
 }
 
-std::optional<Content> Answers::texts(std::string_view query) const {
+std::optional<Content> Answers::texts(const EventReader& events, std::string_view query) {
     const auto list = parameter(query, "numbers");
     if (!list) return std::nullopt;
     std::vector<std::size_t> numbers;
@@ -72,16 +72,16 @@ std::optional<Content> Answers::texts(std::string_view query) const {
         if (comma == std::string_view::npos) break;
         rest.remove_prefix(comma + 1);
     }
-    const nlohmann::json json = events_.table().texts(numbers);
+    const nlohmann::json json = events.table().texts(numbers);
     return Content{kJson, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
 }
 
-std::optional<Content> Answers::find(std::string_view query) const {
+std::optional<Content> Answers::find(const EventReader& events, std::string_view query) {
     const auto text = parameter(query, "text");
     const auto part = text ? unescaped(*text) : std::nullopt;
     if (!part || part->empty() || part->size() > kLongestSearch) return std::nullopt;
     std::string out;
-    append_numbers(out, std::span<const std::uint32_t>(events_.table().find(*part, kMostFound)));
+    append_numbers(out, std::span<const std::uint32_t>(events.table().find(*part, kMostFound)));
     return Content{kBinary, std::move(out)};
 }
 
@@ -90,18 +90,21 @@ std::optional<Content> Answers::get(std::string_view target) const {
     const std::string_view name = target.substr(0, mark);
     const std::string_view query =
         mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+    const std::shared_ptr<const EventReader> latest = latest_();
+    const EventReader& events = *latest;
     if (query.empty() && mark == std::string_view::npos) {
         if (name.empty()) return Content{"text/html; charset=utf-8", std::string(page_html())};
         if (name == "page.js") return Content{"text/javascript; charset=utf-8", std::string(page_script())};
         if (name == "page.css") return Content{"text/css; charset=utf-8", std::string(page_style())};
         if (name == "head") return Content{kJson, recording_.head()};
-        if (name == "status") return Content{kJson, events_.status()};
+        if (name == "status") return Content{kJson, events.status()};
         if (name == "poses") return Content{kBinary, recording_.poses()};
-        if (name == "beams") return Content{kBinary, events_.beams()};
+        if (name == "beams") return Content{kBinary, events.beams()};
+        if (name == "drive" && driver_ != nullptr) return Content{kJson, driver_->state()};
         return std::nullopt;
     }
-    if (name == "texts") return texts(query);
-    if (name == "find") return find(query);
+    if (name == "texts") return texts(events, query);
+    if (name == "find") return find(events, query);
     const bool sensors = name == "sensors";
     const auto value = parameter(query, sensors ? "robot" : "from");
     const auto number = value ? number_of(*value) : std::nullopt;
@@ -109,8 +112,10 @@ std::optional<Content> Answers::get(std::string_view target) const {
     if (sensors)
         return *number < recording_.robots() ? std::optional(Content{kBinary, recording_.sensors(*number)})
                                              : std::nullopt;
-    if (name == "events") return Content{kBinary, events_.table().block(*number, kMostEvents)};
-    if (name == "leds") return Content{kBinary, events_.leds(*number, kMostEvents)};
+    if (name == "events") return Content{kBinary, events.table().block(*number, kMostEvents)};
+    if (driver_ != nullptr && (name == "new-robots" || name == "new-objects"))
+        return Content{"text/csv; charset=utf-8", recording_.tail(name == "new-robots", *number)};
+    if (name == "leds") return Content{kBinary, events.leds(*number, kMostEvents)};
     return std::nullopt;
 }
 

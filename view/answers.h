@@ -2,9 +2,12 @@
 // What a page asks for and gets: the parts of the page itself, and what was derived from the folder. Nothing
 // else has an address, so no address leads to a file.
 
+#include "view/live/driver.h"
 #include "view/read_events.h"
 #include "view/recording.h"
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +22,14 @@ struct Content {
 class Answers {
   public:
     /// Both must outlive it.
-    Answers(const Recording& recording, const EventReader& events) : recording_(recording), events_(events) {}
+    Answers(const Recording& recording, const EventReader& events)
+        : recording_(recording), latest_([&events] {
+              return std::shared_ptr<const EventReader>(std::shared_ptr<void>(), &events);
+          }) {}
+    /// Of a run that goes on: the latest events, and what drives it. Both must outlive it.
+    Answers(const Recording& recording, std::function<std::shared_ptr<const EventReader>()> latest,
+            Driver& driver)
+        : recording_(recording), latest_(std::move(latest)), driver_(&driver) {}
 
     /// `target` is what follows the token: "", "page.js", "events?from=0". Nothing: there is no such thing,
     /// or the numbers in it are none. Throws RunError for damaged files.
@@ -31,11 +41,12 @@ class Answers {
     static constexpr std::size_t kLongestSearch = 200;  ///< bytes
 
   private:
-    std::optional<Content> texts(std::string_view query) const;
-    std::optional<Content> find(std::string_view query) const;
+    static std::optional<Content> texts(const EventReader& events, std::string_view query);
+    static std::optional<Content> find(const EventReader& events, std::string_view query);
 
     const Recording& recording_;
-    const EventReader& events_;
+    std::function<std::shared_ptr<const EventReader>()> latest_;
+    Driver* driver_ = nullptr;
 };
 
 /// "%2e" and "+" as they are meant; nothing for a broken escape.

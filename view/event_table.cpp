@@ -34,7 +34,8 @@ bool has(std::string_view text, std::string_view part) {
 
 }  // namespace
 
-EventTable::EventTable(std::size_t most) : most_(std::max<std::size_t>(most, 2)), texts_(std::tmpfile()) {
+EventTable::EventTable(std::size_t most, std::uint32_t generation)
+    : most_(std::max<std::size_t>(most, 2)), texts_(std::tmpfile()), generation_(generation) {
     if (!texts_) fail("cannot be made");
 }
 

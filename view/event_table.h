@@ -31,7 +31,8 @@ class EventTable {
   public:
     /// More plain events (neither failed nor rare) than `most` are thinned: of each track every second stays,
     /// of what comes later every second too, and so on.
-    explicit EventTable(std::size_t most = kMost);
+    /// `generation`: of the first status; goes up from there.
+    explicit EventTable(std::size_t most = kMost, std::uint32_t generation = 0);
 
     /// The number of a track, which is made where there is none of that name. RunError above 65,535.
     std::uint16_t track(const Track& track);

@@ -63,8 +63,8 @@ std::optional<std::uint8_t> led_of(std::string_view signal) {
 
 }  // namespace
 
-EventReader::EventReader(const Recording& recording, std::size_t most)
-    : recording_(recording), table_(most), thread_([this] { run(); }) {}
+EventReader::EventReader(const Recording& recording, std::size_t most, std::uint32_t generation)
+    : recording_(recording), table_(most, generation), thread_([this] { run(); }) {}
 
 EventReader::~EventReader() {
     stop_ = true;
@@ -189,7 +189,9 @@ void EventReader::led(const std::string& from, const std::string& signal, double
 }
 
 void EventReader::read_trace() {
-    const tools::RecordedTrace trace(recording_.folder(), {});
+    tools::TraceSelection all;
+    all.warns = !recording_.live();
+    const tools::RecordedTrace trace(recording_.folder(), all);
     const double duration = std::max(recording_.duration_s(), 1e-3);
     const auto share = [&](const cosim::TraceRow& row) {
         return std::min(cosim::to_seconds(row.time) / duration, 1.0);

@@ -16,8 +16,9 @@ namespace puckloop::view {
 
 class EventReader {
   public:
-    /// Begins to read; `recording` must outlive it. `most`: of EventTable.
-    explicit EventReader(const Recording& recording, std::size_t most = EventTable::kMost);
+    /// Begins to read; `recording` must outlive it. `most` and `generation`: of EventTable.
+    explicit EventReader(const Recording& recording, std::size_t most = EventTable::kMost,
+                         std::uint32_t generation = 0);
     /// Stops reading.
     ~EventReader();
     EventReader(const EventReader&) = delete;
@@ -26,6 +27,8 @@ class EventReader {
     const EventTable& table() const { return table_; }
     /// Until everything is read. Throws what was wrong, if it was: InputError, RunError.
     void wait();
+    /// Nothing is left to read.
+    bool done() const { return done_; }
 
     /// JSON: generation, events, left_out, tracks, done, progress (0..1), what is read now, what was wrong.
     std::string status() const;

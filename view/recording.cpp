@@ -45,7 +45,7 @@ std::string string_of(const ordered_json& json, const char* key) {
 
 }  // namespace
 
-Recording::Recording(fs::path folder) : folder_(std::move(folder)) {
+Recording::Recording(fs::path folder, bool live) : folder_(std::move(folder)), live_(live) {
     std::error_code error;
     if (!fs::exists(folder_, error)) throw InputError(folder_.string(), "", "no such folder", kFolder);
     if (!fs::is_directory(folder_, error)) throw InputError(folder_.string(), "", "is no folder", kFolder);
@@ -62,6 +62,7 @@ Recording::Recording(fs::path folder) : folder_(std::move(folder)) {
 void Recording::read_report() {
     const fs::path file = folder_ / "report.json";
     const std::string text = text_of(file);
+    if (text.empty() && live_) return;
     if (text.empty()) {
         notes_.emplace_back(
             "report.json is not there: the run goes on, or was killed. What it recorded is shown");
@@ -165,7 +166,7 @@ std::vector<std::string> Recording::sensor_columns() const {
 }
 
 std::string Recording::head() const {
-    ordered_json head{{"format", 1}, {"duration_s", duration_s_}, {"notes", notes_}};
+    ordered_json head{{"format", 1}, {"live", live_}, {"duration_s", duration_s_}, {"notes", notes_}};
     head["report"] = report_.empty() ? ordered_json() : ordered_json::parse(report_);
     head["arena"] = arena_.empty() ? ordered_json() : ordered_json::parse(arena_);
     head["stations"] = stations_;
@@ -189,6 +190,17 @@ std::string Recording::poses() const {
                 append_number(out, static_cast<float>(point.*part));
     }
     return out;
+}
+
+std::string Recording::tail(bool robots, std::size_t from) const {
+    std::ifstream in(folder_ / (robots ? "trajectory.csv" : "objects.csv"), std::ios::binary);
+    std::string text(kMostTail, '\0');
+    if (!in || !in.seekg(static_cast<std::streamoff>(from))) return {};
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    const std::size_t end = text.rfind('\n');
+    text.resize(end == std::string::npos ? 0 : end + 1);
+    return text;
 }
 
 std::string Recording::sensors(std::size_t robot) const {

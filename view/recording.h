@@ -15,7 +15,9 @@ class Recording {
   public:
     /// Throws InputError for what is no results folder, for damaged files and for those of another version,
     /// with the remedy. Files that a run which was killed could not write are notes.
-    explicit Recording(std::filesystem::path folder);
+    /// `live`: of a run that goes on, so that a missing report is nothing to note.
+    explicit Recording(std::filesystem::path folder, bool live = false);
+    bool live() const { return live_; }
 
     const std::filesystem::path& folder() const { return folder_; }
     /// Robots, then TAMs: beams name their ends by the place in this list.
@@ -34,7 +36,11 @@ class Recording {
     /// first. At most kMostRows rows, every so many-th of the file. Throws RunError for damaged rows.
     std::string sensors(std::size_t robot) const;
 
+    /// Whole lines of trajectory.csv (`robots`) or objects.csv from byte `from` on, at most kMostTail bytes.
+    std::string tail(bool robots, std::size_t from) const;
+
     static constexpr std::size_t kMostRows = 20'000;
+    static constexpr std::size_t kMostTail = 1 << 20;
 
   private:
     void read_report();
@@ -44,6 +50,7 @@ class Recording {
     std::vector<std::string> sensor_columns() const;
 
     std::filesystem::path folder_;
+    bool live_ = false;
     std::vector<std::string> notes_, stations_;
     std::size_t robots_ = 0;
     double duration_s_ = 0.0;

@@ -125,13 +125,13 @@ class Browser:
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=count)
 
-    def drag(self, x, y, to_x, to_y):
+    def drag(self, x, y, to_x, to_y, modifiers=0):
         mouse = "Input.dispatchMouseEvent"
-        self.call(mouse, type="mousePressed", x=x, y=y, button="left", clickCount=1)
+        self.call(mouse, type="mousePressed", x=x, y=y, button="left", clickCount=1, modifiers=modifiers)
         for step in range(1, 6):
             self.call(mouse, type="mouseMoved", x=x + (to_x - x) * step / 5, y=y + (to_y - y) * step / 5,
-                      button="left", buttons=1)
-        self.call(mouse, type="mouseReleased", x=to_x, y=to_y, button="left", clickCount=1)
+                      button="left", buttons=1, modifiers=modifiers)
+        self.call(mouse, type="mouseReleased", x=to_x, y=to_y, button="left", clickCount=1, modifiers=modifiers)
 
     def wheel(self, x, y, amount):
         self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=amount)

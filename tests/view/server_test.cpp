@@ -82,7 +82,9 @@ TEST_CASE("other hosts, origins, tokens and methods are refused") {
     CHECK(ask("GET / HTTP/1.1\r\n" + host + "\r\n") == "404");
     CHECK(ask("GET /" + std::string(32, '0') + "/head HTTP/1.1\r\n" + host + "\r\n") == "404");
     CHECK(ask("POST " + target + " HTTP/1.1\r\n" + host + "Content-Length: 0\r\n\r\n") == "405");
-    CHECK(ask("POST " + target + " HTTP/1.1\r\n" + host + "Content-Length: 5\r\n\r\nhello") == "413");
+    CHECK(ask("POST " + target + " HTTP/1.1\r\n" + host + "Content-Length: 5\r\n\r\nhello") == "405");
+    CHECK(ask("POST " + target + " HTTP/1.1\r\n" + host + "Content-Length: 20000\r\n\r\n" +
+              std::string(20'000, 'x')) == "413");
     CHECK(ask("GET http://evil.example" + target + " HTTP/1.1\r\n" + host + "\r\n") == "404");
     CHECK(ask("rubbish\r\n\r\n") == "400");
     CHECK(ask("GET " + target + " HTTP/1.1\r\n" + host + "X: " + std::string(20'000, 'x') + "\r\n\r\n") ==

@@ -6,7 +6,9 @@
 #include "tools/commands.h"
 #include "traces/recorded_trace.h"
 #include "view/answers.h"
+#include "view/event_passes.h"
 #include "view/export_page.h"
+#include "view/live/driver.h"
 #include "view/server/http_server.h"
 
 #include <fmt/format.h>
@@ -31,11 +33,7 @@ void export_file(const view::Recording& recording, const std::string& file) {
     if (file != "-") fmt::print("{}: {:.1f} MB\n", file, static_cast<double>(page.size()) * 1e-6);
 }
 
-void serve(const view::Recording& recording, int port) {
-    const view::EventReader events(recording);
-    const view::Answers answers(recording, events);
-    view::HttpServer server(static_cast<std::uint16_t>(port),
-                            [&](std::string_view target) { return answers.get(target); });
+void serve_on(view::HttpServer& server) {
     fmt::print("{}\nopen this address in a browser; Ctrl-C ends\n", server.address());
     std::fflush(stdout);
     server.serve();
@@ -46,6 +44,34 @@ void serve(const view::Recording& recording, int port) {
             refused += fmt::format("{}{} ({})", refused.empty() ? "" : ", ", counts.refused[i],
                                    name_of(static_cast<view::Refusal>(i)));
     fmt::print("\n{} requests answered{}\n", counts.answered, refused.empty() ? "" : "; refused: " + refused);
+    std::fflush(stdout);
+}
+
+void serve(const view::Recording& recording, int port) {
+    const view::EventReader events(recording);
+    const view::Answers answers(recording, events);
+    view::HttpServer server(static_cast<std::uint16_t>(port),
+                            [&](std::string_view target) { return answers.get(target); });
+    serve_on(server);
+}
+
+/// A run that waits for its client.
+void serve_live(const std::string& folder, int port) {
+    view::Driver driver(folder);  // from here on the run's files are its own, not an earlier run's
+    const view::Recording recording(folder, true);
+    const view::EventPasses passes(recording, [&] { return driver.on(); });
+    const view::Answers answers(
+        recording, [&] { return passes.latest(); }, driver);
+    view::HttpServer server(
+        static_cast<std::uint16_t>(port), [&](std::string_view target) { return answers.get(target); },
+        [&](std::string_view target, const std::string& body) -> std::optional<view::HttpServer::Posted> {
+            if (target != "drive") return std::nullopt;
+            const std::string why = driver.request(body);
+            if (why.empty()) return view::HttpServer::Posted{true, {"application/json", driver.state()}};
+            return view::HttpServer::Posted{false, {"text/plain; charset=utf-8", why}};
+        });
+    fmt::print(stderr, "puckloop: the run stands still until the page lets it go on\n");
+    serve_on(server);
 }
 
 }  // namespace
@@ -68,6 +94,11 @@ void declare_view(Command& app, int&) {
                     "  puckloop view out/hello                     # prints the address to open\n"
                     "  puckloop view out/hello --export hello.html # one file to keep or to mail\n");
     command->callback([options] {
+        if (view::Driver::is_there(options->folder)) {
+            if (!options->file.empty())
+                throw InputError(options->folder, "--export", "its run goes on", "the end of the run");
+            return serve_live(options->folder, options->port);
+        }
         const view::Recording recording(options->folder);
         for (const std::string& note : recording.notes())
             fmt::print(stderr, "puckloop: {}: {}\n", options->folder, note);

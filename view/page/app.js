@@ -1,5 +1,6 @@
 // Joins the parts: reads the run, keeps the time, hears keys and buttons, draws when something has changed.
 import { ArenaView } from './arena.js';
+import { Live, sensorsAgainAfter } from './live.js';
 import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors } from './model.js';
 import { palette } from './palette.js';
 import { Panel } from './panel.js';
@@ -30,6 +31,13 @@ class App {
     this.timeline = new TimelineView(element('timeline'), this.run, (time, number) => this.jump(time, number), redraw);
     this.panel = new Panel(element('panel'), this.run, this.source, (robot) => this.choose(robot),
       (time, number) => this.jump(time, number));
+    if (head.live) {
+      this.live = new Live(this.run, this.source, redraw, (error) => this.trouble(error));
+      await this.live.refresh();
+      element('live').hidden = false;
+      element('speed').append(new Option('max', 0));
+      this.arena.carry = (name, to) => this.drive({ do: 'act', command: `move ${name} to ${to.x.toFixed(4)} m, ${to.y.toFixed(4)} m` });
+    }
     this.fill();
     this.listen();
     this.theme();
@@ -37,18 +45,27 @@ class App {
     if (head.robots > 0) this.choose(0);
     document.body.dataset.ready = 'arena';
     requestAnimationFrame((time) => this.frame(time));
+    if (this.live) this.live.poll().catch((error) => this.trouble(error));
     await this.readEvents();
     document.body.dataset.ready = 'all';
+    while (this.live) {
+      await new Promise((resolve) => setTimeout(resolve, sensorsAgainAfter));
+      const { over } = this.live.state;
+      await this.readEvents();
+      await this.panel.load(this.robot);
+      if (over && this.settled) break;
+      this.settled = over;
+    }
   }
 
   fill() {
     const { head } = this.run, report = head.report;
-    const title = report ? report.scenario : 'a run';
+    const title = report ? report.scenario : head.live ? 'a run that goes on' : 'a run';
     element('title').textContent = title;
     document.title = `${title} - puckloop`;
     const outcome = element('outcome');
     outcome.textContent = report ? `seed ${report.seed}, ${this.run.duration.toFixed(3)} s, ${report.success ? '' : 'failed: '}${report.ended_why}`
-      : `${this.run.duration.toFixed(3)} s, no report`;
+      : head.live ? '' : `${this.run.duration.toFixed(3)} s, no report`;
     outcome.className = report && !report.success ? 'failed' : '';
     this.notes([...head.notes, ...(report ? report.warnings : [])]);
     element('slider').max = this.run.duration;
@@ -89,6 +106,7 @@ class App {
     for (;;) {
       const status = await this.source.status();
       run.tracks = status.tracks;
+      if (status.generation !== run.events.generation && run.leds.count > 0) run.leds = new Leds();
       let more = run.events.count < status.events || run.events.generation !== status.generation;
       while (more) {
         more = run.events.append(await this.source.events(run.events.count));
@@ -145,7 +163,7 @@ class App {
     this.run.redraw();
   }
   jump(time, number) {
-    this.play(false);
+    if (this.live) this.live.atEdge = false; else this.play(false);
     this.seek(time);
     this.timeline.show(time);
     this.select(number).catch((error) => this.trouble(error));
@@ -170,7 +188,19 @@ class App {
     element('detail').textContent = `${events.begins[number].toFixed(6)} s${took}  ${track.name}  ${text}`;
     element('detail').className = failed ? 'failed' : '';
   }
+  /** Has the run do something; what is refused is shown. */
+  drive(request) {
+    return this.live.ask(request).catch((error) => {
+      element('detail').textContent = error.message;
+      element('detail').className = 'failed';
+    });
+  }
   play(on) {
+    if (this.live) {
+      if (on) this.live.atEdge = true;
+      if (on || this.live.state.playing) this.drive(on ? { do: 'play', speed: Number(element('speed').value) } : { do: 'pause' });
+      return;
+    }
     if (on && this.run.now >= this.run.duration) this.seek(0);
     this.playing = on;
     element('play').textContent = on ? '❚❚' : '▶';
@@ -228,8 +258,17 @@ class App {
     const on = (id, what, act) => element(id).addEventListener(what, (event) => {
       Promise.resolve(act(event)).catch((error) => this.trouble(error));
     });
-    on('play', 'click', () => this.play(!this.playing));
-    on('slider', 'input', () => { this.seek(Number(element('slider').value)); this.timeline.show(this.run.now); });
+    on('play', 'click', () => this.play(!(this.live ? this.live.state.playing : this.playing)));
+    if (this.live) {
+      on('speed', 'change', () => this.live.state.playing && this.play(true));
+      on('step-1', 'click', () => { this.live.atEdge = true; return this.drive({ do: 'step', ms: 1 }); });
+      on('step-100', 'click', () => { this.live.atEdge = true; return this.drive({ do: 'step', ms: 100 }); });
+      on('to-edge', 'click', () => { this.live.atEdge = true; this.run.redraw(); });
+      on('press-reset', 'click', () => this.drive({ do: 'act', command: `reset ${this.run.head.stations[this.robot]}` }));
+      on('end-run', 'click', () => this.drive({ do: 'end' }));
+      on('take', 'click', () => this.drive({ do: 'take' }));
+    }
+    on('slider', 'input', () => { if (this.live) this.live.atEdge = false; this.seek(Number(element('slider').value)); this.timeline.show(this.run.now); });
     on('theme', 'click', () => { this.dark = !this.dark; this.theme(); });
     on('arena-fit', 'click', () => { element('follow').value = -1; this.arena.fit(); this.run.redraw(); });
     for (const id of ['follow', 'trail', 'beams']) on(id, 'change', () => this.run.redraw());
@@ -243,6 +282,10 @@ class App {
   }
   key(event) {
     const target = event.target;
+    if (target.id === 'command') {
+      if (event.key === 'Enter' && target.value.trim()) this.drive({ do: 'act', command: target.value.trim() });
+      return undefined;
+    }
     if (target.id === 'find' && event.key === 'Enter') {
       event.preventDefault();
       return this.step(!event.shiftKey).catch((error) => this.trouble(error));
@@ -252,9 +295,9 @@ class App {
       return undefined;
     }
     const small = event.altKey ? 0.001 : event.shiftKey ? 1 : 0.1;
-    const move = (by) => { this.play(false); this.seek(this.run.now + by); this.timeline.show(this.run.now); };
+    const move = (by) => { if (this.live) this.live.atEdge = false; else this.play(false); this.seek(this.run.now + by); this.timeline.show(this.run.now); };
     const keys = {
-      ' ': () => this.play(!this.playing), ArrowLeft: () => move(-small), ArrowRight: () => move(small),
+      ' ': () => element('play').click(), ArrowLeft: () => move(-small), ArrowRight: () => move(small),
       Home: () => move(-1e9), End: () => move(1e9), n: () => this.step(true), N: () => this.step(false),
       '+': () => this.timeline.zoom(0.6, this.run.now), '-': () => this.timeline.zoom(1 / 0.6, this.run.now),
       0: () => this.timeline.all(), f: () => element('arena-fit').click(), m: () => this.marker(false),
@@ -271,6 +314,30 @@ class App {
     element('detail').className = 'failed';
   }
 
+  showLive(time) {
+    const { run, live } = this, { state } = live;
+    const now = live.advance(run.now, this.before ? Math.min(time - this.before, 200) : 0);
+    this.before = time;
+    element('slider').max = run.duration;
+    if (now !== run.now) {
+      this.seek(now);
+      const span = this.timeline.to - this.timeline.from;
+      if (now > this.timeline.to || span < 10 && run.duration < 10) this.timeline.place(Math.max(0, now - 0.8 * span), Math.max(span, Math.min(10, run.duration)));
+    }
+    element('play').textContent = state.playing ? '\u275a\u275a' : '\u25b6';
+    element('take').hidden = live.drives;
+    document.body.dataset.playing = state.playing;
+    document.body.dataset.simulated = state.time_s.toFixed(6);
+    document.body.dataset.over = state.over;
+    const last = state.acts.at(-1);
+    const text = state.over ? `the run is over: ${state.why}` : last ? `${last.command}: ${last.answer || 'done in the next step'}` : '';
+    if (text !== this.said) {
+      this.said = text;
+      element('detail').textContent = text;
+      element('detail').className = last && last.refused ? 'failed' : '';
+    }
+  }
+
   frame(time) {
     requestAnimationFrame((next) => this.frame(next));
     const { run } = this, speed = Number(element('speed').value);
@@ -280,6 +347,7 @@ class App {
       if (run.now >= run.duration) this.play(false);
       this.timeline.show(run.now);
     }
+    if (this.live) this.showLive(time);
     if (!this.dirty) return;
     this.dirty = false;
     const colours = this.colours();

@@ -64,12 +64,15 @@ export class ArenaView {
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
       drag = { x: event.offsetX, y: event.offsetY, moved: false, measures: event.shiftKey };
+      if (event.altKey && this.carry) drag.carries = this.nameAt(event.offsetX, event.offsetY);
       if (drag.measures) this.ruler = { from: this.world(drag.x, drag.y), to: this.world(drag.x, drag.y) };
       else this.ruler = null;
     });
     canvas.addEventListener('pointermove', (event) => {
       if (!drag) return;
-      if (drag.measures) {
+      if (drag.carries) {
+        this.ghost = this.world(event.offsetX, event.offsetY);
+      } else if (drag.measures) {
         this.ruler.to = this.world(event.offsetX, event.offsetY);
       } else if (drag.moved || Math.hypot(event.offsetX - drag.x, event.offsetY - drag.y) > 3) {
         this.centre.x -= (event.offsetX - drag.x) / this.scale;
@@ -80,10 +83,28 @@ export class ArenaView {
       this.redraw();
     });
     canvas.addEventListener('pointerup', (event) => {
-      if (drag && !drag.moved && !drag.measures) this.choose(event.offsetX, event.offsetY);
+      if (drag && drag.carries && this.ghost) this.carry(drag.carries, this.ghost);
+      else if (drag && !drag.moved && !drag.measures) this.choose(event.offsetX, event.offsetY);
       drag = null;
+      this.ghost = null;
       this.redraw();
     });
+  }
+  /** The robot or thing at a place; '': none. */
+  nameAt(px, py) {
+    const place = this.world(px, py), arena = this.run.head.arena;
+    const things = arena ? arena.things.map((thing) => ({ ...thing, reach: thing.radius || Math.hypot(thing.length, thing.width) / 2 })) : [];
+    let best = '', least = Infinity;
+    const look = (name, pose, reach) => {
+      const away = pose ? Math.hypot(pose.x - place.x, pose.y - place.y) : Infinity;
+      if (name && away < reach && away < least) { least = away; best = name; }
+    };
+    for (const thing of things) {
+      const path = this.run.paths.find((one) => !one.robot && one.name === thing.name);
+      look(thing.name, (path && poseAt(path, this.run.now)) || thing, thing.reach);
+    }
+    for (const path of this.run.paths) if (path.robot) look(path.name, poseAt(path, this.run.now), this.radius(path.name));
+    return best;
   }
   choose(px, py) {
     let best = -1, distance = 25;  // pixels beside a robot that still mean it
@@ -121,6 +142,14 @@ export class ArenaView {
       if (pose) this.robot(path.name, pose, options.selected);
     });
     if (this.ruler) this.measure();
+    if (this.ghost) {
+      g.beginPath();
+      g.arc(...this.at(this.ghost.x, this.ghost.y), defaultRadius * this.scale, 0, 2 * Math.PI);
+      g.setLineDash([4, 3]);
+      g.strokeStyle = colours.text;
+      g.stroke();
+      g.setLineDash([]);
+    }
     this.scaleBar(width, height);
   }
   poseOf(station) {

@@ -48,8 +48,9 @@ void add_headers(http::response<http::string_body>& answer) {
 struct HttpServer::Impl : std::enable_shared_from_this<HttpServer::Impl> {
     class Session;
 
-    Impl(std::uint16_t port, Get answer, ServerLimits bounds)
+    Impl(std::uint16_t port, Get answer, Post change, ServerLimits bounds)
         : get(std::move(answer)),
+          post(std::move(change)),
           limits(bounds),
           acceptor(context),
           signals(context, SIGINT, SIGTERM, SIGHUP),
@@ -70,6 +71,7 @@ struct HttpServer::Impl : std::enable_shared_from_this<HttpServer::Impl> {
     void refuse(Refusal refusal) { ++counts.refused[static_cast<std::size_t>(refusal)]; }
 
     Get get;
+    Post post;
     ServerLimits limits;
     asio::io_context context{1};
     tcp::acceptor acceptor;
@@ -93,7 +95,7 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
     void read() {
         parser_.emplace();
         parser_->header_limit(static_cast<std::uint32_t>(server_->limits.header_bytes));
-        parser_->body_limit(0);
+        parser_->body_limit(server_->limits.body_bytes);
         stream_.expires_after(milliseconds(server_->limits.request_seconds));
         http::async_read(
             stream_, buffer_, *parser_,
@@ -122,7 +124,8 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
             return refuse(*refused, http::status::forbidden);
         const auto rest = server_->access->rest_of(text_of(request.target()));
         if (!rest) return refuse(Refusal::Token, http::status::not_found);
-        if (request.method() != http::verb::get)
+        if (request.method() == http::verb::post && server_->post) return change(*rest);
+        if (request.method() != http::verb::get || !request.body().empty())
             return refuse(Refusal::Method, http::status::method_not_allowed);
         std::optional<Content> content;
         try {
@@ -138,6 +141,18 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
         answer_ = {http::status::ok, 11};
         answer_.set(http::field::content_type, content->type);
         answer_.body() = std::move(content->body);
+        send();
+    }
+
+    void change(std::string_view rest) {
+        if (parser_->get()[http::field::origin].empty())
+            return refuse(Refusal::Origin, http::status::forbidden);
+        auto posted = server_->post(rest, parser_->get().body());
+        if (!posted) return refuse(Refusal::Unknown, http::status::not_found);
+        ++server_->counts.answered;
+        answer_ = {posted->done ? http::status::ok : http::status::conflict, 11};
+        answer_.set(http::field::content_type, posted->content.type);
+        answer_.body() = std::move(posted->content.body);
         send();
     }
 
@@ -174,7 +189,7 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
     beast::tcp_stream stream_;
     std::shared_ptr<Impl> server_;
     beast::flat_buffer buffer_;
-    std::optional<http::request_parser<http::empty_body>> parser_;
+    std::optional<http::request_parser<http::string_body>> parser_;
     http::response<http::string_body> answer_;
     bool keep_ = false;
 };
@@ -192,8 +207,8 @@ void HttpServer::Impl::accept() {
     });
 }
 
-HttpServer::HttpServer(std::uint16_t port, Get get, ServerLimits limits)
-    : impl_(std::make_shared<Impl>(port, std::move(get), limits)) {}
+HttpServer::HttpServer(std::uint16_t port, Get get, Post post, ServerLimits limits)
+    : impl_(std::make_shared<Impl>(port, std::move(get), std::move(post), limits)) {}
 
 HttpServer::~HttpServer() = default;
 

@@ -15,7 +15,8 @@ namespace puckloop::view {
 
 struct ServerLimits {
     std::size_t connections = 64;     ///< more are closed at once
-    std::size_t header_bytes = 8192;  ///< of a request; none may have a body
+    std::size_t header_bytes = 8192;  ///< of a request
+    std::size_t body_bytes = 4096;    ///< of a POST; a GET may have none
     double request_seconds = 15;      ///< for a whole request to come, and idle between two
     double answer_seconds = 60;       ///< for a slow reader to take an answer
 };
@@ -23,9 +24,16 @@ struct ServerLimits {
 class HttpServer {
   public:
     using Get = std::function<std::optional<Content>(std::string_view target)>;
+    /// A request that changes something: `done` false is a refusal (409) with its reason as content. Only
+    /// pages of this server may ask: the request has to have an Origin.
+    struct Posted {
+        bool done = false;
+        Content content;
+    };
+    using Post = std::function<std::optional<Posted>(std::string_view target, const std::string& body)>;
 
     /// Listens. `port` 0: any that is free. Throws InputError if it is taken.
-    HttpServer(std::uint16_t port, Get get, ServerLimits limits = {});
+    HttpServer(std::uint16_t port, Get get, Post post = {}, ServerLimits limits = {});
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;

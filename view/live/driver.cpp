@@ -1,0 +1,280 @@
+#include "view/live/driver.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace puckloop::view {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kStepMs = 100;  // while it plays: what trajectories are recorded in
+constexpr int kMostStepMs = 10'000;
+constexpr double kMostSpeed = 1000.0;
+constexpr std::size_t kLongestCommand = 1000, kLongestName = 64;
+constexpr std::size_t kLongestReply = 16U << 20;
+
+/// The client's socket of control.json; empty: there is none, or the run has ended.
+std::string socket_of(const fs::path& folder) {
+    std::ifstream in(folder / "control.json", std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto note = json::parse(text, nullptr, false);
+    return note.is_object() && note.contains("control") && note["control"].is_string()
+               ? note["control"].get<std::string>()
+               : std::string();
+}
+
+}  // namespace
+
+bool Driver::is_there(const fs::path& folder) {
+    return !socket_of(folder).empty();
+}
+
+Driver::Driver(const fs::path& folder) {
+    const std::string path = socket_of(folder);
+    sockaddr_un place{};
+    place.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof place.sun_path)
+        throw InputError(folder.string(), "", "no run that takes a client goes on there",
+                         "`puckloop run SCENARIO --control`");
+    std::memcpy(place.sun_path, path.c_str(), path.size() + 1);
+    socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const timeval patience{10, 0};  // for its first line: a run that has a client lets others wait
+    if (socket_ < 0 || ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
+        ::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
+        const int reason = errno;
+        if (socket_ >= 0) ::close(socket_);
+        throw InputError(folder.string(), "",
+                         fmt::format("its run does not answer: {}", std::strerror(reason)),
+                         "a run that goes on and has no other client");
+    }
+    try {
+        const auto first = json::parse(ask(""), nullptr, false);
+        if (!first.is_object() || first.value("protocol", 0) != 1)
+            throw InputError(folder.string(), "", "its run speaks another control protocol",
+                             "the same version of puckloop for both");
+        time_s_ = first.value("time_s", 0.0);
+    } catch (const RunError&) {
+        ::close(socket_);
+        throw InputError(folder.string(), "", "its run does not answer",
+                         "a run that has no other client: one drives at a time");
+    } catch (...) {
+        ::close(socket_);
+        throw;
+    }
+    const timeval none{0, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &none, sizeof none);
+    thread_ = std::thread([this] { run(); });
+}
+
+Driver::~Driver() {
+    {
+        const std::lock_guard lock(mutex_);
+        end_ = true;
+        changed_.notify_all();
+    }
+    thread_.join();
+    ::close(socket_);
+}
+
+/// Sends a line, unless it is empty, and takes the next one. Throws RunError when the run has closed the
+/// line.
+std::string Driver::ask(const std::string& request) {
+    const std::string line = request.empty() ? "" : request + "\n";
+    for (std::size_t sent = 0; sent < line.size();) {
+        const ::ssize_t now = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+        if (now < 0 && errno == EINTR) continue;
+        if (now <= 0) throw RunError("the run has closed the line");
+        sent += static_cast<std::size_t>(now);
+    }
+    while (true) {
+        if (const std::size_t end = received_.find('\n'); end != std::string::npos) {
+            std::string answer = received_.substr(0, end);
+            received_.erase(0, end + 1);
+            return answer;
+        }
+        if (received_.size() > kLongestReply) throw RunError("a reply of the run is too long");
+        char piece[65536];
+        const ::ssize_t got = ::recv(socket_, piece, sizeof piece, 0);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) throw RunError("the run has closed the line");
+        received_.append(piece, static_cast<std::size_t>(got));
+    }
+}
+
+void Driver::run() noexcept {
+    try {
+        while (serve()) {
+        }
+    } catch (const std::exception& error) {
+        const std::lock_guard lock(mutex_);
+        if (why_.empty()) why_ = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+    playing_ = false;
+}
+
+/// One step or act; false when the run is over.
+bool Driver::serve() {
+    using Clock = std::chrono::steady_clock;
+    Work work;
+    double speed = 0.0;
+    bool ends = false;
+    {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return end_ || playing_ || !waiting_.empty(); });
+        ends = end_;
+        if (!waiting_.empty()) {
+            work = waiting_.front();
+            waiting_.pop_front();
+        } else {
+            work.ms = kStepMs;
+            // Slower than real time: finer, so that it moves.
+            if (speed_ > 0 && speed_ < 1)
+                work.ms = std::max(1, static_cast<int>(std::lround(kStepMs * speed_)));
+            speed = speed_;
+        }
+    }
+    if (ends) {
+        end_run();
+        return false;
+    }
+    if (!work.command.empty()) {
+        act(work.command);
+        return true;
+    }
+    const auto begun = Clock::now();
+    step(work.ms);
+    std::unique_lock lock(mutex_);
+    if (over_) return false;
+    if (speed > 0) {
+        const auto due = begun + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(1e-3 * work.ms / speed));
+        changed_.wait_until(lock, due, [this] { return end_ || !playing_ || !waiting_.empty(); });
+    }
+    return true;
+}
+
+void Driver::step(int ms) {
+    const auto reply =
+        json::parse(ask(json{{"op", "step"}, {"for", fmt::format("{} ms", ms)}}.dump()), nullptr, false);
+    if (!reply.is_object()) throw RunError("a reply of the run that is none");
+    const std::lock_guard lock(mutex_);
+    time_s_ = reply.value("time_s", time_s_);
+    if (!reply.value("ok", true)) why_ = reply.value("error", "");
+    for (const auto& done : reply.value("acts", json::array())) {
+        const std::string command = done.value("act", "");
+        for (Act& act : acts_)
+            if (act.answer.empty() && act.command == command) {
+                act.refused = done.contains("refused");
+                act.answer = act.refused ? done.value("refused", "")
+                                         : fmt::format("{:.3f} s: {}", done.value("at_s", 0.0),
+                                                       done.value("done", ""));
+                break;
+            }
+    }
+    if (!reply.value("ended", false)) return;
+    over_ = true;
+    why_ = reply.value("ended_why", "");
+}
+
+void Driver::act(const std::string& command) {
+    const auto reply = json::parse(ask(json{{"op", "act"}, {"command", command}}.dump()), nullptr, false);
+    const std::lock_guard lock(mutex_);
+    Act done{++act_number_, command, "", false};
+    if (!reply.is_object() || !reply.value("ok", false)) {
+        done.refused = true;
+        done.answer = reply.is_object() ? reply.value("error", "refused") : "refused";
+    }
+    acts_.push_back(std::move(done));
+    if (acts_.size() > kKeptActs) acts_.erase(acts_.begin());
+}
+
+void Driver::end_run() {
+    const auto reply = json::parse(ask(json{{"op", "end"}}.dump()), nullptr, false);
+    const std::lock_guard lock(mutex_);
+    if (reply.is_object()) {
+        time_s_ = reply.value("time_s", time_s_);
+        why_ = reply.value("ended_why", "");
+    }
+}
+
+std::string Driver::request(const std::string& text) {
+    const auto asked = json::parse(text, nullptr, false);
+    if (!asked.is_object()) return "not a request";
+    const auto string_of = [&](const char* key) {
+        const auto found = asked.find(key);
+        return found != asked.end() && found->is_string() ? found->get<std::string>() : std::string();
+    };
+    const auto number_of = [&](const char* key, double otherwise) {
+        const auto found = asked.find(key);
+        return found != asked.end() && found->is_number() ? found->get<double>() : otherwise;
+    };
+    const std::string page = string_of("page"), what = string_of("do");
+    if (page.empty() || page.size() > kLongestName) return "no page is named";
+    const std::lock_guard lock(mutex_);
+    if (over_) return "the run is over";
+    if (driver_.empty() || what == "take") driver_ = page;
+    if (driver_ != page) return "another page drives";
+    if (waiting_.size() >= kMostWaiting) return "the run is slow: too much is waiting";
+    if (what == "play") {
+        const double speed = number_of("speed", 1.0);
+        if (!(speed >= 0.0 && speed <= kMostSpeed)) return "a speed from 0 to 1000 is expected";
+        speed_ = speed;
+        playing_ = true;
+    } else if (what == "pause") {
+        playing_ = false;
+    } else if (what == "step") {
+        const double ms = number_of("ms", 0.0);
+        if (!(ms >= 1.0 && ms <= kMostStepMs)) return "a step of 1 to 10,000 ms is expected";
+        playing_ = false;
+        waiting_.push_back({static_cast<int>(ms), ""});
+    } else if (what == "act") {
+        const std::string command = string_of("command");
+        if (command.empty() || command.size() > kLongestCommand) return "a command is expected";
+        waiting_.push_back({0, command});
+    } else if (what == "end") {
+        end_ = true;
+    } else if (what != "take") {
+        return "an unknown request";
+    }
+    changed_.notify_all();
+    return "";
+}
+
+std::string Driver::state() const {
+    const std::lock_guard lock(mutex_);
+    json acts = json::array();
+    for (const Act& act : acts_)
+        acts.push_back({{"number", act.number},
+                        {"command", act.command},
+                        {"answer", act.answer},
+                        {"refused", act.refused}});
+    const json state{{"time_s", time_s_}, {"playing", playing_}, {"speed", speed_}, {"over", over_},
+                     {"why", why_},       {"driver", driver_},   {"acts", acts}};
+    return state.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+bool Driver::on() const {
+    const std::lock_guard lock(mutex_);
+    return !over_;
+}
+
+}  // namespace puckloop::view
