@@ -148,7 +148,7 @@ class MissionProgram final : public physics::MissionSource {
                     ::send(to_.number(), rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
                 if (sent > 0) rest.remove_prefix(static_cast<std::size_t>(sent));
                 if (sent < 0 && errno != EAGAIN && errno != EINTR)
-                    rest = {};  // it reads no more: what it answers tells
+                    rest = {};  // it reads no more, but may have answered
             }
             if (wait[0].revents != 0) {
                 char piece[4096];

@@ -1,5 +1,5 @@
 #pragma once
-// A mission program of a run: it is told what the tracker sees, counts the score, and may act on the world.
+// A mission program of a run: it gets what the tracker sees, counts the score, and may act on the world.
 
 #include "base/fields/field.h"
 

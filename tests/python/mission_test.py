@@ -1,4 +1,4 @@
-"""Mission programs in real runs: what they are told, what they may do, and what becomes of bad ones."""
+"""Mission programs in real runs: what they get, what they may do, and what becomes of bad ones."""
 
 import csv
 import json
@@ -52,12 +52,12 @@ score = 0
 kept = open(sys.argv[0] + ".lines", "w")
 for line in sys.stdin:
     kept.write(line)
-    told = json.loads(line)
+    line = json.loads(line)
     answer = {"score": score}
-    if told.get("frame") == 3:
+    if line.get("frame") == 3:
         answer["act"] = ["set spot grey 1", "set nothing grey 0", "move two to 30 cm, 20 cm"]
-    if "frame" in told:
-        score += len(told["robots"])
+    if "frame" in line:
+        score += len(line["robots"])
         answer["score"] = score
     print(json.dumps(answer), flush=True)
 """
@@ -74,7 +74,7 @@ class Missions(InFolder):
     def report(self, out="out"):
         return json.loads((self.folder / out / "report.json").read_text())
 
-    def told(self):
+    def lines_of_run(self):
         return [json.loads(line) for line in (self.folder / "judge.lines").read_text().splitlines()]
 
     def failed(self, ended, *parts):
@@ -85,7 +85,7 @@ class Missions(InFolder):
     def test_a_program_is_told_what_the_tracker_sees_and_its_last_score_is_the_runs(self):
         ended = self.ran(COUNTS)
         self.assertEqual(ended.returncode, 0, ended.stderr)
-        lines = self.told()
+        lines = self.lines_of_run()
         self.assertEqual(lines[0]["begin"], 1)
         self.assertEqual([robot["name"] for robot in lines[0]["robots"]], ["one", "two"])
         self.assertEqual(lines[0]["duration_s"], 1.0)
@@ -102,7 +102,7 @@ class Missions(InFolder):
 
     def test_what_it_asks_for_is_done_one_step_later_and_what_is_refused_comes_back(self):
         self.assertEqual(self.ran(COUNTS).returncode, 0)
-        frames = {told["frame"]: told for told in self.told() if "frame" in told}
+        frames = {line["frame"]: line for line in self.lines_of_run() if "frame" in line}
         self.assertEqual(frames[3]["events"], [])
         events = {event["act"]: event for event in frames[4]["events"]}
         self.assertEqual(events["set spot grey 1"]["at_s"], 0.331)

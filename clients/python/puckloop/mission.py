@@ -1,4 +1,4 @@
-"""A mission program: it is told what the tracker sees, counts the score, and may act on the world.
+"""A mission program: it gets what the tracker sees, counts the score, and may act on the world.
 
     from puckloop.mission import Mission
 

@@ -137,7 +137,7 @@ static void hold(int kind) {
 }
 
 /* The result first: the time is when the call came back. */
-static void told(const char* call, long result) {
+static void report(const char* call, long result) {
     printf("%s %ld at %ld\n", call, result, milliseconds());
 }
 
@@ -148,10 +148,10 @@ static void waits(void) {
     file = open("lockfile", O_RDWR | O_CREAT, 0600);
     hold(0);
     printf("flock at once %d\n", flock(file, LOCK_EX | LOCK_NB));
-    told("flock", flock(file, LOCK_EX));
+    report("flock", flock(file, LOCK_EX));
     flock(file, LOCK_UN);
     hold(1);
-    told("lockf", lockf(file, F_LOCK, 0));
+    report("lockf", lockf(file, F_LOCK, 0));
     lockf(file, F_ULOCK, 0);
     queue = msgget(IPC_PRIVATE, 0600);
     set = semget(IPC_PRIVATE, 1, 0600);
@@ -160,13 +160,13 @@ static void waits(void) {
         char text[8];
     } message;
     after(100, send_message);
-    told("msgrcv", msgrcv(queue, &message, 8, 0, 0));
+    report("msgrcv", msgrcv(queue, &message, 8, 0, 0));
     struct sembuf down = {0, -1, 0};
     after(100, lift);
-    told("semop", semop(set, &down, 1));
+    report("semop", semop(set, &down, 1));
     const struct timespec brief = {0, 50000000};
     const int late = semtimedop(set, &down, 1, &brief) == -1 && errno == EAGAIN;
-    told("semtimedop too late", late);
+    report("semtimedop too late", late);
     msgctl(queue, IPC_RMID, NULL);
     semctl(set, 0, IPC_RMID);
     struct mq_attr attributes = {.mq_maxmsg = 2, .mq_msgsize = 8};
@@ -175,12 +175,12 @@ static void waits(void) {
     if (mailbox != (mqd_t)-1) {
         mq_unlink(text);
         after(100, post);
-        told("mq_receive", mq_receive(mailbox, text, 8, NULL));
+        report("mq_receive", mq_receive(mailbox, text, 8, NULL));
     }
     int out[2];
     if (pipe(lines) != 0 || pipe(out) != 0) exit(1);
     after(100, pour);
-    told("splice", splice(lines[0], NULL, out[1], NULL, 1, 0));
+    report("splice", splice(lines[0], NULL, out[1], NULL, 1, 0));
     printf("raise %d, kill %d: goes on\n", raise(SIGSTOP), kill(getpid(), SIGSTOP));
     while (wait(&status) > 0)
         if (status != 0) printf("a child ended with %d\n", status);

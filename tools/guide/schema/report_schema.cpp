@@ -87,7 +87,7 @@ ordered_json report_schema() {
          {{"kind", of("string", "aggregation, shelter, foraging, coverage, grid_exploration or program")},
           {"score", or_null("number", "null: no step was counted, or no robot")},
           {"better", {{"enum", {"more", "less"}}}},
-          {"steps", of("integer", "that were counted; of a program: frames that it was told")},
+          {"steps", of("integer", "that were counted; of a program: frames that it got")},
           {"step_s", of("number", "length of a step; not of a program")},
           {"why", of("string", "why there is no score, or what the program did wrong")}}},
         {"required", {"kind", "score", "better", "steps"}}};
