@@ -10,6 +10,8 @@
 
 namespace puckloop::tools {
 
+struct WorkProfile;
+
 class Kit {
   public:
     explicit Kit(const BenchOptions& options);
@@ -38,6 +40,8 @@ class Kit {
     void time_world();
     /// Images on the main board that wait.
     void time_waiting();
+    /// Twenty robots of a laboratory, and what their cost is made of (benchmark/work_profile.h).
+    void time_lab20();
     /// Wandering robots: peak memory.
     void weigh(double simulated_s);
 
@@ -56,6 +60,7 @@ class Kit {
     /// again.
     std::optional<RunTiming> peer_run(const RunSpec& spec, const RunTiming& own, Figure& figure) const;
     void add_reference(Figure& figure) const;
+    void add_profile(const std::string& title, const WorkProfile& profile);
 
     BenchOptions options_;
     std::filesystem::path folder_;

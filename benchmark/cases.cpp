@@ -88,6 +88,8 @@ const std::vector<Case>& table() {
         {"rab1", "a robot with a busy range-and-bearing board", [](Kit& kit) { rab(kit, 1); }},
         {"rab2", "two of them", [](Kit& kit) { rab(kit, 2); }},
         {"rab8", "eight of them", [](Kit& kit) { rab(kit, 8); }},
+        {"lab20", "twenty robots of a laboratory, and what their cost is made of",
+         [](Kit& kit) { kit.time_lab20(); }},
         {"tams18", "tams18.toml, eighteen TAMs with radio mesh and coordinator, in one process", tams18}};
     return cases;
 }

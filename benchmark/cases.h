@@ -11,10 +11,11 @@ namespace puckloop::tools {
 
 struct BenchOptions {
     std::vector<std::string> cases{"core", "scenario"};
-    std::filesystem::path scenario;   ///< of the case "scenario"; empty: the project's hello.toml
-    std::filesystem::path image;      ///< of the case "core", on the bare chip as well; empty: none
-    std::filesystem::path rab_image;  ///< empty: the project's
-    std::filesystem::path peer;       ///< another build of puckloop; empty: none
+    std::filesystem::path scenario;    ///< of the case "scenario"; empty: the project's hello.toml
+    std::filesystem::path image;       ///< of the case "core", on the bare chip as well; empty: none
+    std::filesystem::path rab_image;   ///< empty: the project's
+    std::filesystem::path peer;        ///< another build of puckloop; empty: none
+    std::vector<std::string> program;  ///< of the case "lab20", for original images; empty: none
     std::vector<int> robots{1, 10, 100};
     double simulated_s = 20.0;  ///< of the scenario; dearer runs take a fixed share of it
     double slice_s = 0.4;       ///< wall time of each measurement that has no duration of its own

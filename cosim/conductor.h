@@ -95,6 +95,7 @@ struct Outcome {
         std::string name;
         std::string json;          ///< from Node::finish(); empty if the node could not give it
         std::uint64_t grants = 0;  ///< differs with placement and load
+        WorkCounts work{};         ///< the same; empty for a node in a process of its own
     };
     struct LinkReport {
         std::string name;

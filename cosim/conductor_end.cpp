@@ -119,7 +119,7 @@ void Conductor::State::finish(Outcome& outcome) {
     for (TraceSink* sink : sinks)
         guarded([&] { sink->flush(); });
     for (std::size_t n = 0; n < handles_.size(); ++n) {
-        outcome.nodes.push_back({handles_[n]->name(), {}, slots_[n].grants});
+        outcome.nodes.push_back({handles_[n]->name(), {}, slots_[n].grants, handles_[n]->work()});
         guarded([&] {
             current_ = n;
             outcome.nodes.back().json = handles_[n]->finish();

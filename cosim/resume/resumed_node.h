@@ -12,6 +12,7 @@
 // It can also be the one that saves: at `save_at` it hands out its state with all that it received and sent.
 
 #include "cosim/core/stateful_node.h"
+#include "cosim/core/work_counts.h"
 #include "cosim/resume/board_state.h"
 
 #include <functional>
@@ -33,7 +34,7 @@ struct ResumeOptions {
     std::function<std::string(BoardState state)> save{};
 };
 
-class ResumedNode : public Node {
+class ResumedNode : public Node, public CountsWork {
   public:
     /// Makes a fresh node at power-up.
     using Make = std::function<std::unique_ptr<StatefulNode>()>;
@@ -54,6 +55,10 @@ class ResumedNode : public Node {
     Time lives_from() const { return options_.from ? options_.from->time : 0; }
     /// The board's report, with "resumed" (from, at_s, skipped, what differed) added.
     std::string finish() override;
+    /// The board's, if it counts.
+    void add_work(WorkCounts& counts) const override {
+        if (const auto* counting = dynamic_cast<const CountsWork*>(inner_.get())) counting->add_work(counts);
+    }
 
   private:
     void replay(Time until, std::span<const Message> inbox, std::vector<Message>& outbox);

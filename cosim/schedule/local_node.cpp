@@ -78,6 +78,8 @@ class LocalNode : public NodeHandle {
         node_->read_state(state_);
     }
 
+    WorkCounts work() const override { return node_ ? node_->work() : WorkCounts{}; }
+
     std::string finish() override {
         std::string report;
         guarded("could not finish", [&] { report = node_->finish(); });

@@ -4,6 +4,7 @@
 #include "cosim/core/message.h"
 #include "cosim/core/node.h"
 #include "cosim/core/time.h"
+#include "cosim/core/work_counts.h"
 #include "cosim/schedule/stride.h"
 
 #include <chrono>
@@ -86,6 +87,8 @@ class NodeHandle {
     /// Into a node with a state that was never granted anything: it stands at `time` then, and state() is as
     /// of there. Throws InputError if the state does not fit.
     virtual void load(Time time, const std::vector<std::uint8_t>& state) = 0;
+    /// What the node's work was made of so far, before finish(); empty for one in a process of its own.
+    virtual WorkCounts work() const { return {}; }
     /// Ends the node and returns its part of the report as JSON text; empty if it was lost before.
     virtual std::string finish() = 0;
     /// The process it lives in, 0 for this one.

@@ -38,7 +38,9 @@ std::optional<Advanced> RunAhead::begin(const Reach& reach, std::span<const Mess
     wrong_ = kNever;
     if (goes_in_strides(echoes) &&
         (node_->suspendable() == nullptr || !echoes.empty() || reach.until <= reached_)) {
-        reached_ = ahead_ = advance_in_strides(*node_, reached_, reach, inbox, echoes, outbox);
+        const Time from = reached_;
+        reached_ = ahead_ = advance_in_strides(*node_, from, reach, inbox, echoes, outbox);
+        note_advance(from, reached_, take_before(reached_, inbox).size());
         return Advanced{reached_, ahead_, outbox.size()};
     }
     if (reach.until < reached_) throw RunError("was granted time that it had passed");
@@ -92,7 +94,9 @@ bool RunAhead::begin_sure(std::span<const Message>& inbox) {
         execute(reach_.until, inbox);
         return true;
     }
-    if (!node_->suspendable()->begin(reach_.until, take_before(reach_.until, inbox), sent_)) return false;
+    const auto due = take_before(reach_.until, inbox);
+    note_advance(ahead_, reach_.until, due.size());
+    if (!node_->suspendable()->begin(reach_.until, due, sent_)) return false;
     ahead_ = reach_.until;
     return true;
 }
@@ -157,6 +161,7 @@ std::vector<Message> RunAhead::used_before_reached() const {
 
 void RunAhead::take_back() {
     node_->rewindable()->rewind();
+    ++work_.rewinds;
     ahead_ = mark_;
     used_.clear();
     sent_.clear();
@@ -173,6 +178,7 @@ void RunAhead::back_to_reached() {
 void RunAhead::execute(Time until, std::span<const Message>& inbox) {
     const auto due = take_before(until, inbox);
     node_->advance(until, due, sent_);
+    note_advance(ahead_, until, due.size());
     if (marked_) used_.insert(used_.end(), due.begin(), due.end());
     ahead_ = until;
 }
@@ -191,6 +197,7 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
     if (may_reach(until, inbox) <= ahead_) return;
     if (!marked_) {
         node_->rewindable()->mark();
+        ++work_.marks;
         marked_ = true;
         mark_ = ahead_;
         forget_lookaheads();
@@ -299,6 +306,22 @@ void RunAhead::load(Time time, std::span<const std::uint8_t> state) {
                          std::string("its state does not fit: ") + error.what());
     }
     reached_ = ahead_ = time;
+}
+
+void RunAhead::note_advance(Time from, Time to, std::size_t messages) {
+    ++work_.advances;
+    work_.messages += messages;
+    work_.executed += to - from;
+}
+
+WorkCounts RunAhead::work() const {
+    WorkCounts counts{{"advances", work_.advances},
+                      {"messages taken in", work_.messages},
+                      {"us executed", static_cast<std::uint64_t>(work_.executed / kMicrosecond)},
+                      {"marks", work_.marks},
+                      {"rewinds", work_.rewinds}};
+    if (const auto* counting = dynamic_cast<const CountsWork*>(node_.get())) counting->add_work(counts);
+    return counts;
 }
 
 std::string RunAhead::finish() {

@@ -12,6 +12,7 @@
 #include "cosim/core/message.h"
 #include "cosim/core/node.h"
 #include "cosim/core/stateful_node.h"
+#include "cosim/core/work_counts.h"
 #include "cosim/schedule/node_handle.h"
 #include "cosim/schedule/stride.h"
 
@@ -55,6 +56,8 @@ class RunAhead {
     void wind_up(int signal);
     /// What was run ahead is taken back.
     std::string finish();
+    /// What it took so far, and of what the node itself counts.
+    WorkCounts work() const;
 
     /// The node's whole state can be saved and loaded.
     bool has_state() const { return stateful_ != nullptr; }
@@ -65,6 +68,13 @@ class RunAhead {
     void load(Time time, std::span<const std::uint8_t> state);
 
   private:
+    struct Work {
+        std::uint64_t advances = 0;  ///< of the node
+        std::uint64_t messages = 0;  ///< handed to it
+        Time executed = 0;           ///< what was taken back counts, too
+        std::uint64_t marks = 0, rewinds = 0;
+    };
+
     bool goes_in_strides(const std::vector<PortEcho>& echoes) const;
     bool begin_sure(std::span<const Message>& inbox);
     void end_sure(std::vector<Message>& outbox);
@@ -79,6 +89,7 @@ class RunAhead {
     void run_on(Time until, std::span<const Message>& inbox);
     void take_in(std::span<const Message>& inbox);
     bool answers_late() const;
+    void note_advance(Time from, Time to, std::size_t messages);
     void note_earliest_outputs();
     void sample_lookaheads();
     void forget_lookaheads();
@@ -102,6 +113,7 @@ class RunAhead {
     std::vector<Time>
         earliest_outputs_;          ///< by port, where the lookahead is not zero: before a message came in
     std::vector<Time> lookaheads_;  ///< by port, the shortest since the mark
+    Work work_;
 };
 
 }  // namespace puckloop::cosim

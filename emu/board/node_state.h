@@ -6,6 +6,7 @@
 #include "cosim/core/node.h"
 #include "cosim/core/time.h"
 
+#include <cstdint>
 #include <memory>
 
 namespace puckloop::board {
@@ -43,22 +44,27 @@ class NodeMark : public cosim::Rewindable {
         log_.mark();
         chip_->mark();
         checkpoint_.take(node_);
+        bytes_ += checkpoint_.size();
     }
     void rewind() override {
         log_.rewind();
         chip_->rewind();
         checkpoint_.restore(node_);
+        bytes_ += checkpoint_.size();
     }
     void settle() override {
         chip_->settle();
         log_.settle();
     }
+    /// Copied into and out of the checkpoint so far.
+    std::uint64_t bytes() const { return bytes_; }
 
   private:
     Node& node_;
     const std::unique_ptr<Chip>& chip_;
     Log& log_;
     Checkpoint checkpoint_;
+    std::uint64_t bytes_ = 0;
 };
 
 }  // namespace puckloop::board

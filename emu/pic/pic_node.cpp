@@ -305,6 +305,11 @@ void PicNode::state(CheckpointReader& archive) {
     if (faults_) archive(*faults_);
 }
 
+void PicNode::add_work(cosim::WorkCounts& counts) const {
+    chip_->add_work(counts);
+    counts.emplace_back("bytes copied for going back", mark_.bytes());
+}
+
 std::string PicNode::finish() {
     log_.end(granted_, *chip_, board_);
     if (options_.nvm) options_.nvm->save(chip_->memory());

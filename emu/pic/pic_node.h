@@ -45,7 +45,10 @@ struct PicNodeOptions {
     std::vector<cosim::CarriedFault> faults{};   ///< of this board
 };
 
-class PicNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
+class PicNode : public cosim::StatefulNode,
+                public cosim::CountsWork,
+                private BoardListener,
+                private chip::BoardAccess {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
@@ -72,6 +75,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
     std::string finish() override;
+    void add_work(cosim::WorkCounts& counts) const override;
 
     void state(StateWriter& archive) const override;
     void state(StateReader& archive) override;

@@ -223,6 +223,11 @@ void RabNode::state(CheckpointReader& archive) {
     if (faults_) archive(*faults_);
 }
 
+void RabNode::add_work(cosim::WorkCounts& counts) const {
+    chip_->add_work(counts);
+    counts.emplace_back("bytes copied for going back", mark_.bytes());
+}
+
 std::string RabNode::finish() {
     log_.end(granted_, *chip_);
     if (options_.nvm) options_.nvm->save(chip_->memory());

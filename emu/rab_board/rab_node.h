@@ -30,7 +30,10 @@ struct RabNodeOptions {
     std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class RabNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
+class RabNode : public cosim::StatefulNode,
+                public cosim::CountsWork,
+                private BoardListener,
+                private chip::BoardAccess {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
@@ -50,6 +53,7 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, emission, I2C and UART counters.
     std::string finish() override;
+    void add_work(cosim::WorkCounts& counts) const override;
 
     void state(StateWriter& archive) const override;
     void state(StateReader& archive) override;

@@ -3,9 +3,11 @@
 #include "base/error.h"
 #include "benchmark/board_replay.h"
 #include "benchmark/cases.h"
+#include "benchmark/lab_scenario.h"
 #include "benchmark/process_memory.h"
 #include "benchmark/timed_run.h"
 #include "benchmark/wander_scenario.h"
+#include "benchmark/work_profile.h"
 #include "scenarios/reader/scenario.h"
 #include "tests/scratch.h"
 #include "tests/tools/shell.h"
@@ -41,6 +43,7 @@ class Scratch {
 const std::filesystem::path kHello = PUCKLOOP_SOURCE "/scenarios/hello.toml";
 const std::filesystem::path kPair = PUCKLOOP_SOURCE "/scenarios/rab_pair.toml";
 const std::filesystem::path kMainImage = PUCKLOOP_SOURCE "/firmware/epuck/epuck.hex";
+const std::filesystem::path kRabImage = PUCKLOOP_SOURCE "/firmware/rab/rab.hex";
 
 }  // namespace
 
@@ -97,6 +100,57 @@ TEST_CASE("wandering robots have the same room each, however many") {
                 nearest = std::min(nearest, std::hypot(bodies[i].x - bodies[k].x, bodies[i].y - bodies[k].y));
         if (robots > 1) CHECK(nearest == Approx(0.3));
     }
+}
+
+TEST_CASE("robots of a laboratory have the floor of twenty in a dodecagon") {
+    const Scratch scratch;
+    for (const int robots : {2, 20, 50}) {
+        const auto scenario = scenarios::read_scenario(
+            write_lab_scenario(scratch.path(), {robots, kMainImage, kRabImage, {}, 0.1}));
+        REQUIRE(scenario.world.robots.size() == static_cast<std::size_t>(robots));
+        double outermost = 0;
+        for (const auto& body : scenario.world.robots)
+            outermost = std::max(outermost, std::hypot(body.x, body.y));
+        CHECK(outermost < 1.231 * std::sqrt(robots / 20.0) - 0.04);  // a robot's radius is 3.7 cm
+        for (const auto& robot : scenario.robots)
+            CHECK(robot.rab.has_value());
+    }
+}
+
+TEST_CASE("work is counted by cause, what was executed again as often") {
+    const Scratch scratch;
+    ::setenv("PATH", (PUCKLOOP_CONTROL_FOLDER ":" + std::string(std::getenv("PATH"))).c_str(), 1);
+    RunRequest request;
+    request.scenario = write_lab_scenario(scratch.path(), {2, kMainImage, kRabImage, {}, 0.1});
+    request.out = scratch.path() / "profiled";
+    request.duration = 0.4;
+    request.in_process = true;
+    request.threads = 1;
+    const WorkProfile profile = profile_work(request);
+    const double simulated_us = 1e6 * profile.simulated_s;
+    CHECK(profile.simulated_s >= 0.4);
+    CHECK(profile.messages.at("ir") > 100);
+    for (const char* kind : {"pic", "rab"}) {
+        const KindWork* work = profile.kind(kind);
+        REQUIRE(work != nullptr);
+        INFO(kind);
+        CHECK(work->nodes == 2);
+        CHECK(work->count("grants") > 10);
+        CHECK(work->count("us executed") >= 2 * std::floor(simulated_us));
+        CHECK(work->count("instructions executed") > 100'000);
+        CHECK(work->count("instructions in all") == work->count("instructions executed") +
+                                                        work->count("instructions passed in loops") +
+                                                        work->count("instructions passed in routines"));
+        CHECK(work->count("bytes copied for going back") > 1000 * work->count("marks"));
+    }
+    // It cannot go back, so it executes everything once.
+    REQUIRE(profile.kind("world") != nullptr);
+    CHECK(profile.kind("world")->count("us executed") == std::floor(simulated_us));
+    double executed = 0;
+    for (const char* kind : {"pic", "rab"})
+        executed += profile.kind(kind)->count("instructions executed");
+    CHECK(profile.instructions_needed() > 0);
+    CHECK(profile.instructions_needed() <= executed);
 }
 
 TEST_CASE("boards alone execute what they did in the run") {

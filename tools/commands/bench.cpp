@@ -64,6 +64,12 @@ void declare_bench(Command& app, int& status) {
         ->add_option("--peer", bench.peer,
                      "another build of puckloop, which runs the same in turn; ratios are this build / peer")
         ->type_name("PROGRAM");
+    command
+        ->add_option("--program", bench.program,
+                     "control program for original images in the case lab20, a word of its command line each "
+                     "time: --program ./controller --program=-c --program lab.argos")
+        ->allow_extra_args(false)
+        ->type_name("WORD");
     command->add_option("--robots", bench.robots, "how many wander (default 1 10 100)")
         ->check(whole_number_between(1, kMostRobots))
         ->type_name("N");

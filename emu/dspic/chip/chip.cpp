@@ -75,7 +75,10 @@ void Chip::run_until(Time until) {
     parts.until = std::min(until, parts.pause);
     // The rate may change on the way: then the cycle that starts at `until` is another one.
     for (Cycle limit = parts.until_cycle();; limit = parts.until_cycle()) {
-        if (parts.core.run(limit) == Core::Outcome::Stopped) {
+        const std::uint64_t before = parts.core.instructions();
+        const Core::Outcome outcome = parts.core.run(limit);
+        parts.instructions_run += parts.core.instructions() - before;
+        if (outcome == Core::Outcome::Stopped) {
             parts.stopped_at = parts.core.pc();
             parts.arrive(std::min(parts.until, parts.clock.time_of(parts.core.cycle())));
             return;

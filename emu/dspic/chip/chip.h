@@ -7,6 +7,7 @@
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
+#include "cosim/core/work_counts.h"
 #include "emu/chip/held_interrupts.h"
 #include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/devices/device.h"
@@ -203,6 +204,8 @@ class Chip {
     /// A word of RAM at an even data address. Throws std::out_of_range elsewhere.
     std::uint16_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
+    /// What the core executed and passed, loops and routines analysed (fast/fast_work.h).
+    void add_work(cosim::WorkCounts& counts) const;
     std::size_t resets() const;  ///< how many the report has, without making one
     /// What the program has been waiting for, if it has gone round in one loop, or slept, for a tenth of a
     /// second or more. Costs some milliseconds.

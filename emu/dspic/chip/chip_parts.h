@@ -64,6 +64,7 @@ struct Chip::Parts {
     cosim::Time until = 0;  ///< of the run in progress
     cosim::Time pause = cosim::kNever;
     std::optional<Cycle> asleep_since;
+    std::uint64_t instructions_run = 0;        ///< what was taken back counts, too
     std::vector<std::uint16_t> idle_controls;  ///< registers with a bit that stops a module in Idle
     bool holding = true;                       ///< set_power() may have stopped a module
 

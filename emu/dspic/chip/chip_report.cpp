@@ -1,8 +1,11 @@
 // What is reported of a dsPIC: what its program waits for, and what came about.
 
 #include "emu/dspic/chip/chip_parts.h"
+#include "emu/dspic/fast/fast_work.h"
 #include "emu/dspic/waits/judge.h"
 #include "emu/dspic/waits/status_bits.h"
+
+#include <algorithm>
 
 namespace puckloop::dspic {
 
@@ -43,6 +46,24 @@ ChipReport Chip::report() const {
     report.instructions = parts_->core.instructions();
     report.cycles = parts_->core.cycle();
     return report;
+}
+
+void Chip::add_work(cosim::WorkCounts& counts) const {
+    const FastWork& work = parts_->core.fast_work();
+    const std::uint64_t all = parts_->instructions_run;
+    const std::uint64_t passed = work.loop_instructions + work.service_instructions;
+    counts.insert(counts.end(), {{"instructions in all", all},
+                                 {"instructions executed", all - std::min(all, passed)},
+                                 {"instructions passed in loops", work.loop_instructions},
+                                 {"instructions passed in routines", work.service_instructions},
+                                 {"routines passed", work.services},
+                                 {"loops analysed", work.loop_walks},
+                                 {"loops analysed with success", work.loop_plans},
+                                 {"loops refused for good", work.loops_refused},
+                                 {"loop tables", work.loop_tables},
+                                 {"routines analysed for a path", work.path_walks},
+                                 {"routines analysed with success", work.paths},
+                                 {"routines analysed for a summary", work.summary_walks}});
 }
 
 }  // namespace puckloop::dspic

@@ -186,6 +186,10 @@ const Cycle& Core::cycle_counter() const {
 std::uint32_t Core::pc() const {
     return machine_->pc_of(machine_->current);
 }
+const FastWork& Core::fast_work() const {
+    return machine_->skip->work;
+}
+
 std::uint64_t Core::instructions() const {
     return machine_->instructions;
 }

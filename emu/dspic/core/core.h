@@ -52,6 +52,7 @@ struct CoreObserver {
     std::function<void(std::string_view text, std::uint32_t pc)> on_warning;
 };
 
+struct FastWork;
 struct Machine;
 
 class Core {
@@ -109,6 +110,7 @@ class Core {
     const Cycle& cycle_counter() const;
     std::uint32_t pc() const;            ///< of the next instruction; inside hooks: of the present one
     std::uint64_t instructions() const;  ///< executed since power-up, iterations counted, skipped ones too
+    const FastWork& fast_work() const;   ///< what was passed and not executed (fast/fast_work.h)
     PowerMode power_mode() const;
     int cpu_level() const;  ///< IPL3:IPL2:0, 0..15
     const DeviceInfo& device() const;

@@ -135,6 +135,8 @@ void leave_service(Machine& m, const Known& routine) {
     m.watch = (m.watch & routine.keep) | routine.writes;
     m.repeat_first = true;
     m.instructions += routine.instructions;
+    m.skip->work.service_instructions += routine.instructions;
+    ++m.skip->work.services;
 }
 
 bool pass_summary(Machine& m, const IsrSummary& summary, Cycle start, Cycle horizon) {

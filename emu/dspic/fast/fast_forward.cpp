@@ -207,6 +207,10 @@ bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     ++m.skip->skips;
     m.skip->skipped_cycles += skip.arrival - arrival;
     m.skip->passed_services += skip.services;
+    FastWork& work = m.skip->work;
+    work.loop_instructions += skip.iterations * known.plan.instructions;
+    work.service_instructions += skip.services * skip.summary->instructions;
+    work.services += skip.services;
     return true;
 }
 

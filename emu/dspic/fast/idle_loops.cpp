@@ -65,6 +65,7 @@ bool skip_iterations(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     const Cycle cycles = count * plan.cycles;
     m.st.cycle += cycles;
     m.instructions += count * plan.instructions;
+    m.skip->work.loop_instructions += count * plan.instructions;
     if (plan.clears_watchdog) {
         m.watchdog_cleared += cycles;
         schedule_watchdog(m);
@@ -97,6 +98,7 @@ void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op*
     m.loop_undo->note_walk(known);
     known.table.trace = nullptr;
     plan.layout = m.sfr.layout_changes();
+    ++m.skip->work.loop_walks;
     SymbolicLoop walk(m, plan, known.trace);
     switch (walk.analyse(branch, head)) {
     case SymbolicLoop::Verdict::Pure:
@@ -111,6 +113,7 @@ void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op*
             plan.alive = plan.proof_due != kNoCycle;
             if (!plan.alive && !known.trace.steady) return give_up_for_now(m, known);
         }
+        ++m.skip->work.loop_plans;
         --plan.iterations;  // the one that runs now
         break;
     case SymbolicLoop::Verdict::NotNow:
@@ -122,6 +125,7 @@ void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op*
         if (m.program_undo.on())
             m.program_undo.note_operation(m, static_cast<std::uint32_t>(branch - m.code));
         m.code[branch - m.code].may_skip = false;
+        ++m.skip->work.loops_refused;
         break;
     }
 }

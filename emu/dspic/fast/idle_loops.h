@@ -18,6 +18,7 @@
 // A plan stays good over events and interrupts for as long as its cells and registers are as predicted at
 // every arrival at the branch.
 
+#include "emu/dspic/fast/fast_work.h"
 #include "emu/dspic/fast/loop_table.h"
 
 #include <array>
@@ -147,6 +148,7 @@ struct IdleLoops {
     std::deque<Branch> branches;
     std::vector<std::uint16_t> waits;  ///< by branch: arrivals until the next try
     LoopPosition position;
+    FastWork work;
     std::uint64_t skips = 0;  ///< for tests and curiosity
     std::uint64_t skipped_cycles = 0;
     std::uint64_t passed_services = 0;  ///< routines without a trace that fell into skips

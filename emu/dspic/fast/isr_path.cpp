@@ -1,6 +1,7 @@
 #include "emu/dspic/fast/isr_path.h"
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/idle_loops.h"
 #include "emu/dspic/fast/path_domain.h"
 
 #include <algorithm>
@@ -112,11 +113,13 @@ void pause_walks(IsrPaths& all, bool walked) {
 }
 
 void learn_path(Machine& m, IsrPaths& all, int irq, const Service& service) {
+    ++m.skip->work.path_walks;
     IsrPath fresh;
     const bool walked = PathDomain(m, fresh, irq, service.start).walk(m.code + all.handler / 2) &&
                         holds(m, fresh, service) && fresh.stores.size() <= kMostStores;
     pause_walks(all, walked);
     if (!walked) return;
+    ++m.skip->work.paths;
     if (all.paths.size() == kMostPaths) {
         all.paths.clear();
         all.recent = 0;

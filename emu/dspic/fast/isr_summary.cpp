@@ -17,6 +17,7 @@ const IsrSummary* isr_summary(Machine& m, int vector) {
     if (known[index] && known[index]->handler == handler)
         return known[index]->possible ? &*known[index] : nullptr;
     if (handler / 2 >= m.code_words) return nullptr;
+    ++m.skip->work.summary_walks;
     IsrSummary fresh;
     fresh.handler = handler;
     switch (SymbolicIsr(m, fresh, vector - kTrapVectors).run(m.code + handler / 2)) {

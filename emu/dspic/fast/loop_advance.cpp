@@ -83,6 +83,7 @@ void leave_state(Machine& m, const LoopTable& table, const LoopPosition& where, 
     m.watch = (m.watch & kPointers) | at->watch;
     m.current = at->op;
     m.instructions += count;
+    m.skip->work.loop_instructions += count;
 }
 
 }  // namespace
