@@ -3,6 +3,9 @@
 #include "emu/dspic/core/machine.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
 
 namespace puckloop::dspic {
 
@@ -87,8 +90,12 @@ bool prepare(Machine& m, IdleLoops::Branch& known, Skip& skip) {
         trace.live = polls_interrupts(m, known.plan) || live_above_stack(trace, trace.depth);
     }
     if (trace.live) return false;
-    for (const LoopTrace::Boundary& boundary : trace.boundaries)
-        if (!stack_holds(m, skip.summary->depth, boundary.w[15])) return false;
+    std::optional<std::uint16_t> held;  // most loops stay where they are on the stack
+    for (const LoopTrace::Boundary& boundary : trace.boundaries) {
+        if (held == boundary.w[15]) continue;
+        held = boundary.w[15];
+        if (!stack_holds(m, skip.summary->depth, *held)) return false;
+    }
     return true;
 }
 
@@ -143,6 +150,13 @@ void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Skip& skip, C
     }
 }
 
+/// An empty list, whose memory is kept: one at a time.
+std::vector<PassedService>& no_services() {
+    static thread_local std::vector<PassedService> services;
+    services.clear();
+    return services;
+}
+
 std::uint16_t& word(Machine& m, std::uint16_t address) {
     return m.ram[(address - kRamStart) / 2];
 }
@@ -168,8 +182,8 @@ bool steady_event_next(Machine& m) {
 std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival,
                                    std::uint64_t iterations, bool& interrupted) {
     Skip skip;
-    std::vector<PassedService> services;
     if (!prepare(m, known, skip)) return kNoCycle;
+    std::vector<PassedService>& services = no_services();
     simulate(known.plan, known.trace, skip, arrival, iterations, services);
     interrupted = skip.services > 0;
     return skip.iterations == iterations ? skip.arrival : kNoCycle;
@@ -178,8 +192,7 @@ std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::ui
 bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     Skip skip;
     if (!prepare(m, known, skip)) return false;
-    static thread_local std::vector<PassedService> services;
-    services.clear();
+    std::vector<PassedService>& services = no_services();
     const LoopTrace& trace = known.trace;
     simulate(known.plan, trace, skip, arrival, known.plan.iterations - 1, services);
     if (skip.iterations < kFewestIterations || skip.services == 0) return false;

@@ -4,6 +4,8 @@
 #include "emu/dspic/fast/idle_loops.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 
 namespace puckloop::dspic {
 
@@ -17,7 +19,7 @@ class TableMaker {
   public:
     TableMaker(Machine& m, const IdleLoops::Plan& plan, const LoopTrace& trace, LoopTable& table)
         : trace_(trace), table_(table), count_(trace.boundaries.size()) {
-        table_ = {};
+        clear();
         table_.trace = &trace;
         table_.cycles = plan.cycles;
         table_.layout = plan.layout;
@@ -25,14 +27,14 @@ class TableMaker {
             table_.polled.push_back({&m.sfr.raw(plan.polled[i].address), plan.polled[i].value});
         for (std::size_t i = 0; i < plan.count; ++i) {
             const std::uint16_t key = plan.cells[i].key;
-            keys_.push_back(key);
+            keys_[i] = key;
             table_.cells.push_back(key < 16 ? &m.st.w[key] : m.ram + (key - kRamStart) / 2);
         }
     }
     void run() {
         table_.places.reserve(count_ + 1);
-        table_.checks.reserve(count_ * keys_.size());
-        table_.changes.reserve(count_ * keys_.size());
+        table_.checks.reserve(count_ * table_.cells.size());
+        table_.changes.reserve(count_ * table_.cells.size());
         list_instructions();
         for (std::size_t at = 0; at < count_; ++at)
             list_words(at);
@@ -42,6 +44,17 @@ class TableMaker {
     }
 
   private:
+    /// The lists' memory is used again: tables are made often.
+    void clear() {
+        table_.keep = table_.uses = 0;
+        table_.first_at.clear();
+        table_.places.clear();
+        table_.cells.clear();
+        table_.checks.clear();
+        table_.changes.clear();
+        table_.polled.clear();
+    }
+
     void list_instructions() {
         table_.keep = 0xFFFFFFFF;
         const Op* before = trace_.boundaries.back().op;
@@ -72,15 +85,22 @@ class TableMaker {
     void list_words(std::size_t at) {
         LoopTable::Place& place = table_.places[at];
         close_lists(place);
-        for (std::size_t cell = 0; cell < keys_.size(); ++cell) {
+        for (std::size_t cell = 0; cell < table_.cells.size(); ++cell) {
             bool live = true;
             Word word = keys_[cell] < 16 ? of_register(at, keys_[cell]) : of_ram(at, keys_[cell], live);
+            if (keys_[cell] < 16) word.age = ages_[cell] = register_age(at, keys_[cell], ages_[cell]);
             word.cell = static_cast<std::uint16_t>(cell);
             if (live) table_.checks.push_back(word);
-            if (word.age != 0) table_.changes.push_back(word);
+            if (word.age != 0) insert_by_age(place.changes, word);
         }
-        std::stable_sort(table_.changes.begin() + static_cast<std::ptrdiff_t>(place.changes),
-                         table_.changes.end(), [](const Word& a, const Word& b) { return a.age < b.age; });
+    }
+    /// Behind those of the same age; there are a few.
+    void insert_by_age(std::uint32_t first, const Word& word) {
+        auto at = table_.changes.end();
+        const auto begin = table_.changes.begin() + static_cast<std::ptrdiff_t>(first);
+        while (at != begin && std::prev(at)->age > word.age)
+            --at;
+        table_.changes.insert(at, word);
     }
     void close_lists(LoopTable::Place& place) const {
         place.checks = static_cast<std::uint32_t>(table_.checks.size());
@@ -90,10 +110,18 @@ class TableMaker {
 
     Word of_register(std::size_t at, std::uint16_t reg) const {
         const Boundary& boundary = trace_.boundaries[at];
-        Word word{0, boundary.w[reg], boundary.w_steps[reg], 0};
-        for (std::size_t i = 0; i < count_; ++i)
-            if (trace_.boundaries[i].writes >> reg & 1) see_write(word, age(i, at));
-        return word;
+        return {0, boundary.w[reg], boundary.w_steps[reg], 0};
+    }
+    /// `before`: at the boundary before this one.
+    std::uint16_t register_age(std::size_t at, std::uint16_t reg, std::uint16_t before) const {
+        const auto writes = [&](std::size_t i) { return (trace_.boundaries[i].writes >> reg & 1) != 0; };
+        if (at != 0)
+            return writes(at - 1) ? std::uint16_t{1}
+                   : before == 0  ? before
+                                  : static_cast<std::uint16_t>(before + 1);
+        for (std::size_t i = count_; i-- > 0;)
+            if (writes(i)) return age(i, 0);
+        return 0;
     }
     Word of_ram(std::size_t at, std::uint16_t address, bool& live) const {
         const Access *first = nullptr, *last = nullptr, *before = nullptr, *next = nullptr;
@@ -132,7 +160,9 @@ class TableMaker {
     const LoopTrace& trace_;
     LoopTable& table_;
     std::size_t count_;
-    std::vector<std::uint16_t> keys_;
+    std::array<std::uint16_t, IdleLoops::Plan::kMostCells> keys_{};
+    std::array<std::uint16_t, IdleLoops::Plan::kMostCells>
+        ages_{};  ///< of registers, at the boundary that is listed
 };
 
 /// Other branches that come round on the way count as part of the loop (waits/).

@@ -11,6 +11,7 @@ namespace puckloop::dspic {
 
 namespace {
 
+constexpr std::size_t kUsualLength = 32;  ///< instructions; a longer loop takes more memory
 constexpr std::uint64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
@@ -20,6 +21,7 @@ void SymbolicLoop::walk(const Op* branch, const Op* head) {
     plan_.cycles = plan_.instructions = 0;
     plan_.clears_watchdog = false;
     trace_.clear();
+    trace_.boundaries.reserve(kUsualLength);
     bound_ = kForever;
     watch_ = 0;
     w_ = {};
