@@ -5,7 +5,7 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/processes/process_numbers.h"
+#include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"

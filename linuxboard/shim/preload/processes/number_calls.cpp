@@ -4,7 +4,7 @@
 
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/processes/process_numbers.h"
+#include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 

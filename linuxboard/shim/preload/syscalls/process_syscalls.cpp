@@ -2,8 +2,8 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/processes/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"

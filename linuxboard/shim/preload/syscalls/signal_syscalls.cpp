@@ -2,7 +2,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/kernel_signals.h"
-#include "linuxboard/shim/preload/processes/process_numbers.h"
+#include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
