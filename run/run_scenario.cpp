@@ -179,8 +179,6 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     const ResultsFolder folder(setup.out, result_files(setup));
     make_work_folders(setup);
     ReservedFile report(setup.out / "report.json", kReportBytes);
-    // From the start, so that a run that is killed has it as well.
-    physics::write_arena_file(with_added_things(setup.scenario), setup.out / "arena.json");
 
     std::error_code ignored;
     if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", ignored);
@@ -230,6 +228,8 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         if (back) options.from = debuggers->begin_again();
         std::optional<cosim::Conductor> conductor;
         try {
+            // From the start, so that a run that is killed has it as well.
+            if (!back) physics::write_arena_file(with_added_things(setup.scenario), setup.out / "arena.json");
             conductor.emplace(node_specs(setup), setup.links, setup.scenario.faults, options, factory);
         } catch (const RunError& error) {  // why it did not begin is in the report, as of one that ended so
             outcome = {};

@@ -64,7 +64,8 @@ double longest_silence(const Workbench& bench, const std::string& name) {
 TEST_CASE("every I2C fault: the own driver and firmware go on within their bound") {
     // A board that failed five operations is asked again a second later, and set up in 45 ms.
     constexpr double kAskedAgain = 1.2;
-    // What one message of an operation, tried four times, can keep the control loop at most.
+    // What one message of an operation, tried four times, can keep the control loop at most; a bus that hangs
+    // keeps it as long as it hangs, since a message has i2c-omap's second.
     constexpr double kControlPeriod = 0.1;
     struct Case {
         std::string words;    ///< the fault, without its time
@@ -117,7 +118,8 @@ TEST_CASE("every I2C fault: the own driver and firmware go on within their bound
         CHECK(seen.before > 20);
         CHECK(seen.after > 40);
         CHECK(seen.longest_gap < 0.15);  // polled every 20 ms
-        CHECK(longest_silence(bench, name) < 3 * kControlPeriod);
+        const double hangs = one.words.starts_with("scl ") || one.words.starts_with("sda ") ? one.lasts : 0.0;
+        CHECK(longest_silence(bench, name) < 3 * kControlPeriod + hangs);
     }
 }
 

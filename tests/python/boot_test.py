@@ -8,9 +8,10 @@ import pathlib
 import time
 import unittest
 
-from kit import SOURCE, InFolder
+from kit import PROGRAM, SOURCE, InFolder
 
-import puckloop
+os.environ["PUCKLOOP"] = PROGRAM
+import puckloop  # noqa: E402
 
 TURNS = 3
 

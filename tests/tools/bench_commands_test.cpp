@@ -50,7 +50,7 @@ TEST_CASE("the help of puckloop bench explains every case on a line of its own")
     std::smatch list;
     // The list is broken into lines of 100 columns.
     const std::string joined = std::regex_replace(help.output, std::regex(",\n +"), ",");
-    REQUIRE(std::regex_search(joined, list, std::regex("--case \\{([a-z0-9,]+)\\}")));
+    REQUIRE(std::regex_search(joined, list, std::regex("--case\\s+\\{([a-z0-9,]+)\\}")));
     // "  wait      main boards whose ..."
     const auto explained = [&](const std::string& name) {
         std::istringstream lines(help.output);
@@ -70,8 +70,7 @@ TEST_CASE("the help of puckloop bench explains every case on a line of its own")
 }
 
 TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetooth]") {
-    check_refused("bench bluetooth --exchanges 1 --out /proc/nowhere",
-                  "/proc/nowhere: cannot be made: ");
+    check_refused("bench bluetooth --exchanges 1 --out /proc/nowhere", "/proc/nowhere: cannot be made: ");
     check_refused("upload " PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex --script /nowhere/x",
                   "/nowhere/x: --script: cannot be written: No such file");
     check_refused("bench --scenario /nowhere.toml", "/nowhere.toml: --scenario: no such file");

@@ -78,8 +78,9 @@ std::string assemble_dspic(const AsmArguments& arguments, const std::string& fil
         options.predefined[std::string(info.name)] = info.address;
     const dspic::Program program = dspic::assemble(read_text(arguments.file), options);
     if (program.words.empty()) throw InputError(file, "", "yields no program words", "instructions");
+    if (arguments.format == "list") return listing(program);
     warn_of_code_in_vectors(program, file);
-    return arguments.format == "list" ? listing(program) : image::write_dspic_hex(program.words);
+    return image::write_dspic_hex(program.words);
 }
 
 std::string assemble_avr(const AsmArguments& arguments, const std::string& file,

@@ -6,8 +6,9 @@
 
 namespace puckloop::control {
 
-/// I2C_TIMEOUT in units of 10 ms, of each message. The adapter's own is a second; a bus that hangs would keep
-/// the control loop for as long, and the robot driving. A board's longest stretch is some milliseconds.
+/// I2C_TIMEOUT in units of 10 ms. Many adapters give up a message after it, so that a bus that hangs does not
+/// keep the control loop for longer; i2c-omap waits its own second all the same. A board's longest stretch is
+/// some milliseconds.
 inline constexpr unsigned long kI2cPatience = 3;
 
 struct I2cMessage {
