@@ -7,9 +7,17 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 namespace puckloop {
+
+std::optional<std::string> read_whole_file(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return std::nullopt;
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+}
 
 void write_file(const std::filesystem::path& file, std::string_view text) {
     errno = 0;

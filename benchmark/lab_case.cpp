@@ -13,7 +13,7 @@ namespace puckloop::tools {
 
 namespace {
 
-// Of `--duration`, behind the start of the programs.
+// Of `--duration`, after the start of the programs.
 constexpr double kLabShare = 0.05;
 // Until the boards with the project's own images are ready.
 constexpr double kOwnStart = 0.1;

@@ -17,7 +17,7 @@ struct LabSpec {
     double start_s = 0.1;  ///< when the first program starts, simulated s
 };
 
-/// Twenty robots stand in a dodecagon 2.46 m across between its sides, others in one with as much floor for
+/// Twenty robots are in a dodecagon 2.46 m across between its sides, others in one with as much floor for
 /// each. Programs start within 0.1 s of each other. Returns the file, which lies in `folder`.
 std::filesystem::path write_lab_scenario(const std::filesystem::path& folder, const LabSpec& spec);
 

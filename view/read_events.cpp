@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "traces/decode.h"
 #include "traces/rab_losses/results.h"
 #include "view/bytes.h"
@@ -13,7 +14,6 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <span>
@@ -149,8 +149,7 @@ void EventReader::read_logs() {
 }
 
 void EventReader::read_resets() {
-    std::ifstream in(recording_.folder() / "report.json", std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string text = read_whole_file(recording_.folder() / "report.json").value_or("");
     const auto report = ordered_json::parse(text, nullptr, false);
     if (!report.is_object()) return;  // Recording has noted it
     const auto nodes = report.find("nodes");
@@ -248,14 +247,19 @@ void EventReader::read_rab() {
                                               : fmt::format("lost: {}", name_of(fate.cause))));
         const std::size_t sender = station(frame.sender), receiver = station(frame.receiver);
         if (sender >= recording_.stations().size() || receiver >= recording_.stations().size()) continue;
-        const std::lock_guard lock(mutex_);
-        beam_begins_.push_back(begin);
-        beam_durations_.push_back(static_cast<float>(duration));
-        beam_senders_.push_back(static_cast<std::uint16_t>(sender));
-        beam_receivers_.push_back(static_cast<std::uint16_t>(receiver));
-        beam_fates_.push_back(fate.delivered ? kDelivered
-                                             : static_cast<std::uint8_t>(1 + static_cast<int>(fate.cause)));
+        add_beam(begin, duration, sender, receiver,
+                 fate.delivered ? kDelivered : static_cast<std::uint8_t>(1 + static_cast<int>(fate.cause)));
     }
+}
+
+void EventReader::add_beam(double begin, double duration, std::size_t sender, std::size_t receiver,
+                           std::uint8_t fate) {
+    const std::lock_guard lock(mutex_);
+    beam_begins_.push_back(begin);
+    beam_durations_.push_back(static_cast<float>(duration));
+    beam_senders_.push_back(static_cast<std::uint16_t>(sender));
+    beam_receivers_.push_back(static_cast<std::uint16_t>(receiver));
+    beam_fates_.push_back(fate);
 }
 
 void EventReader::read_ircom() {
@@ -276,12 +280,7 @@ void EventReader::read_ircom() {
         const std::string sender(cells[2]), receiver(cells[5]);
         const std::size_t from = station(sender), to = station(receiver);
         if (from >= recording_.stations().size() || to >= recording_.stations().size()) continue;
-        const std::lock_guard lock(mutex_);
-        beam_begins_.push_back(begin);
-        beam_durations_.push_back(static_cast<float>(end - begin));
-        beam_senders_.push_back(static_cast<std::uint16_t>(from));
-        beam_receivers_.push_back(static_cast<std::uint16_t>(to));
-        beam_fates_.push_back(kIrcomWord);
+        add_beam(begin, end - begin, from, to, kIrcomWord);
         const bool wrong = cells[4] != "none";
         table_.add(table_.track({sender + " IRcom", "light", robot_of(sender)}), begin, end - begin,
                    wrong ? kFailed : std::uint8_t{0},

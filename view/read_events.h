@@ -54,6 +54,8 @@ class EventReader {
     void read_trace();
     void read_rab();
     void read_ircom();
+    /// Stations by number.
+    void add_beam(double begin, double duration, std::size_t sender, std::size_t receiver, std::uint8_t fate);
     void led(const std::string& from, const std::string& signal, double time, double value);
     void check_stop() const {
         if (stop_) throw Stopped{};

@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "physics/render/arena_file.h"
 #include "physics/world/booth_record.h"
 #include "view/arena_json.h"
@@ -33,11 +34,6 @@ bool is_there(const fs::path& file) {
     return fs::is_regular_file(file, ignored);
 }
 
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::string string_of(const ordered_json& json, const char* key) {
     const auto found = json.find(key);
     return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -61,7 +57,7 @@ Recording::Recording(fs::path folder, bool live) : folder_(std::move(folder)), l
 
 void Recording::read_report() {
     const fs::path file = folder_ / "report.json";
-    const std::string text = text_of(file);
+    const std::string text = read_whole_file(file).value_or("");
     if (text.empty() && live_) return;
     if (text.empty()) {
         notes_.emplace_back(

@@ -38,13 +38,13 @@ class Section:
 
 @dataclasses.dataclass(frozen=True)
 class Command:
-    words: tuple[str, ...]  #: behind the program's name
+    words: tuple[str, ...]  #: after the program's name
     about: str
     usage: str
     sections: tuple[Section, ...]
     positionals: tuple[Option, ...]
     commands: tuple[tuple[str, str, str], ...]  #: heading, name and what each does
-    notes: tuple[str, ...]  #: lines behind the options
+    notes: tuple[str, ...]  #: lines after the options
     examples: tuple[str, ...]
 
     @property
@@ -100,8 +100,8 @@ def parse(words: Sequence[str], text: str) -> Command:
     if at is None:
         raise Unreadable(f"puckloop {' '.join(words)} --help has no usage")
     about = " ".join(" ".join(lines[:at]).split())
-    behind = next((place for place in range(at, len(lines)) if not lines[place].strip()), len(lines))
-    usage = " ".join(" ".join(lines[at:behind]).removeprefix("Usage: ").split())
+    after = next((place for place in range(at, len(lines)) if not lines[place].strip()), len(lines))
+    usage = " ".join(" ".join(lines[at:after]).removeprefix("Usage: ").split())
     sections: list[Section] = []
     positionals: list[Option] = []
     commands: list[tuple[str, str, str]] = []
@@ -124,7 +124,7 @@ def parse(words: Sequence[str], text: str) -> Command:
             else:
                 commands.extend((title, left, right) for left, right in entries)
 
-    for line in lines[behind:]:
+    for line in lines[after:]:
         if re.match(r"\S.*:$", line) and not line.startswith("puckloop"):
             close()
             title, block = line[:-1], []

@@ -6,9 +6,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-#include <iterator>
-
 namespace puckloop::physics {
 
 namespace {
@@ -23,10 +20,9 @@ void write_arena_file(World world, const std::filesystem::path& file) {
 }
 
 World read_arena_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file.string(), "", "cannot be read", kRemedy);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto text = read_whole_file(file);
+    if (!text) throw InputError(file.string(), "", "cannot be read", kRemedy);
+    const auto json = nlohmann::json::parse(*text, nullptr, false);
     const auto format = json.is_object() ? json.find("format") : json.end();
     if (!json.is_object() || format == json.end() || !format->is_number_integer() || !json.contains("world"))
         throw InputError(file.string(), "", "is damaged", kRemedy);

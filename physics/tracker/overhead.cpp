@@ -34,8 +34,8 @@ void Overhead::at_step(const WorldModel& model, const Journal& journal) {
     }
     for (; !under_way_.empty() && under_way_.front().arrives <= step; under_way_.pop_front()) {
         if (stop_) continue;
-        const std::span<const Journal::Entry> done = std::span(journal.entries()).subspan(told_);
-        told_ += done.size();
+        const std::span<const Journal::Entry> done = std::span(journal.entries()).subspan(reported_);
+        reported_ += done.size();
         take(plan_.mission->frame(under_way_.front(), done, std::exchange(refused_, {})), step);
     }
 }

@@ -51,7 +51,7 @@ class Overhead final : public CommandSource {
     std::vector<Action> asked_;                     // not yet polled
     std::map<std::uint64_t, std::string> waiting_;  // the mission program's commands, by id
     std::vector<RefusedCommand> refused_;
-    std::size_t told_ = 0;  // entries of the journal
+    std::size_t reported_ = 0;  // entries of the journal
     std::uint64_t last_id_ = 0;
     std::optional<cosim::Stop> stop_;
 };

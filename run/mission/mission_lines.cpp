@@ -20,19 +20,17 @@ namespace {
 constexpr std::array<std::string_view, 3> kAnswerKeys{"act", "end", "score"};
 constexpr std::size_t kShownLine = 80, kLongestReason = 200;
 
-/// What a user sees of a time or place: no more digits than mean anything.
-double rounded(double value, double quantum) {
-    return std::round(value / quantum) * quantum;
-}
-double metres(double value) {
-    return std::round(value * 1e5) / 1e5;
-}
-double radians(double value) {
-    return std::round(value * 1e4) / 1e4;
+/// Of a time, place or heading no more digits than mean anything: milliseconds, 10 um, 0.1 mrad.
+constexpr double kPerSecond = 1e3, kPerMetre = 1e5, kPerRadian = 1e4;
+double rounded(double value, double per_unit) {
+    return std::round(value * per_unit) / per_unit;
 }
 
 ordered_json pose(const std::string& name, double x, double y, double heading) {
-    return {{"name", name}, {"x_m", metres(x)}, {"y_m", metres(y)}, {"theta_rad", radians(heading)}};
+    return {{"name", name},
+            {"x_m", rounded(x, kPerMetre)},
+            {"y_m", rounded(y, kPerMetre)},
+            {"theta_rad", rounded(heading, kPerRadian)}};
 }
 
 double seconds_of_step(std::uint64_t step) {
@@ -75,7 +73,7 @@ std::string begin_line(const physics::World& world, const physics::TrackerSpec& 
                       {"arena_m", ordered_json::array()},
                       {"robots", ordered_json::array()}};
     for (const physics::Point& corner : world.arena.corners)
-        line["arena_m"].push_back({metres(corner.x), metres(corner.y)});
+        line["arena_m"].push_back({rounded(corner.x, kPerMetre), rounded(corner.y, kPerMetre)});
     for (const physics::Robot& robot : world.robots)
         line["robots"].push_back(pose(robot.name, robot.x, robot.y, robot.heading));
     return line.dump() + "\n";
@@ -106,7 +104,7 @@ std::string frame_line(const physics::TrackerFrame& frame, const std::vector<std
 }
 
 std::string end_line(double seconds) {
-    return ordered_json{{"end", rounded(seconds, 1e-3)}}.dump() + "\n";
+    return ordered_json{{"end", rounded(seconds, kPerSecond)}}.dump() + "\n";
 }
 
 MissionReply read_reply(std::string_view line) {

@@ -332,6 +332,20 @@ wait:   lds r17, TWCR
     CHECK(rig.ram(0x105) == 0xF8);
 }
 
+namespace {
+
+/// A phase of a bus master at 100 kHz begins now.
+void begin_two_wire_phase(Rig& rig, Kind kind, std::uint8_t byte) {
+    cosim::I2cPhase phase;
+    phase.kind = kind;
+    phase.byte = byte;
+    phase.start = rig.chip.now();
+    phase.clock_period = 10 * cosim::kMicrosecond;
+    rig.chip.twi_slave_phase(phase);
+}
+
+}  // namespace
+
 TEST_CASE("the two-wire slave acknowledges its address and stretches SCL until TWINT is cleared") {
     Rig rig(R"(
         ldi r26, 0
@@ -355,13 +369,8 @@ slow:   dec r18
 )");
     rig.run(100);
     const auto phase = [&](Kind kind, std::uint8_t byte) {
-        cosim::I2cPhase p;
-        p.kind = kind;
-        p.byte = byte;
-        p.start = rig.chip.now();
-        p.clock_period = 10 * cosim::kMicrosecond;
         const std::size_t before = rig.answers.size();
-        rig.chip.twi_slave_phase(p);
+        begin_two_wire_phase(rig, kind, byte);
         for (int i = 0; i < 1000 && kind != Kind::Stop && rig.answers.size() == before; ++i)
             rig.chip.run_until(rig.chip.now() + cosim::kMicrosecond);
         rig.chip.run_until(rig.chip.now() + 10 * cosim::kMicrosecond);
@@ -406,12 +415,7 @@ go:     sts TWCR, r16
 )");
     rig.run(100);
     const auto phase = [&](Kind kind, std::uint8_t byte) {
-        cosim::I2cPhase p;
-        p.kind = kind;
-        p.byte = byte;
-        p.start = rig.chip.now();
-        p.clock_period = 10 * cosim::kMicrosecond;
-        rig.chip.twi_slave_phase(p);
+        begin_two_wire_phase(rig, kind, byte);
         rig.chip.run_until(rig.chip.now() + 100 * cosim::kMicrosecond);
     };
     phase(Kind::Start, 0x42);

@@ -1,15 +1,13 @@
 """The client of clients/python against real runs, in both placements."""
 
 import json
-import os
 import pathlib
 import stat
 import unittest
 
-from kit import PROGRAM, InFolder
+from kit import InFolder
 
-os.environ["PUCKLOOP"] = PROGRAM
-import puckloop  # noqa: E402
+import puckloop
 
 
 def scenario(duration="5 s"):

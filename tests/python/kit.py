@@ -10,6 +10,7 @@ import unittest
 
 PROGRAM = os.environ["PUCKLOOP_PROGRAM"]
 SOURCE = pathlib.Path(os.environ["PUCKLOOP_SOURCE"])
+os.environ["PUCKLOOP"] = PROGRAM  # what clients start
 
 
 def puckloop(*words, folder=None, env=None, timeout=300):

@@ -268,9 +268,9 @@ class Refusals(Served):
     def test_versions(self):
         for asked, got in (("2025-06-18", "2025-06-18"), ("2024-11-05", "2024-11-05"), ("1999-01-01", "2025-06-18")):
             client = self.client(begin=None)
-            told = client.begin(asked)
-            self.assertEqual(told["protocolVersion"], got)
-            self.assertEqual(told["serverInfo"]["name"], "puckloop")
+            answer = client.begin(asked)
+            self.assertEqual(answer["protocolVersion"], got)
+            self.assertEqual(answer["serverInfo"]["name"], "puckloop")
             self.assertEqual("structuredContent" in client.tool("list_runs")["result"], got >= "2025-06-18")
         client = self.client(begin=None)
         self.error(client.get(client.ask("tools/list")), -32600, "before 'initialize'")

@@ -23,7 +23,7 @@ def centre(browser, name, share_x=0.5, share_y=0.5):
 
 
 class Page(unittest.TestCase):
-    """One recorded run, one viewer and one browser for all tests; each loads the page anew."""
+    """One recorded run, one viewer and one browser for all tests; each loads the page again."""
 
     @classmethod
     def setUpClass(cls):

@@ -36,7 +36,7 @@ struct Viewer {
     std::string token;
 
     std::string host() const { return "127.0.0.1:" + std::to_string(port); }
-    /// A request with the right host; `rest` behind the token.
+    /// A request with the right host; `rest` after the token.
     std::string request(const std::string& rest, const std::string& more = {}) const;
     /// Its answer, on a connection of its own.
     std::string get(const std::string& rest) const;

@@ -54,9 +54,9 @@ std::string listing(const avr::Program& program) {
 /// Code of a dsPIC between the reset vector and the end of the vector tables is never executed: a trap
 /// (DS70046, 6.2). Warns of its first line.
 void warn_of_code_in_vectors(const dspic::Program& program, const std::string& file) {
-    constexpr std::uint32_t kFirstVector = 0x4, kBehindVectors = 0x100;
+    constexpr std::uint32_t kFirstVector = 0x4, kAfterVectors = 0x100;
     for (const dspic::AssembledLine& line : program.lines) {
-        if (line.address < kFirstVector || line.address >= kBehindVectors) continue;
+        if (line.address < kFirstVector || line.address >= kAfterVectors) continue;
         const std::string code = line.text.substr(line.text.find(':') + 1);  // 0 without a label
         const std::size_t begin = code.find_first_not_of(" \t");
         if (begin == std::string::npos || code[begin] == '.') continue;

@@ -1,6 +1,7 @@
 #include "view/live/driver.h"
 
 #include "base/error.h"
+#include "base/text_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,8 +15,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 namespace puckloop::view {
 
@@ -32,9 +31,7 @@ constexpr std::size_t kLongestReply = 16U << 20;
 
 /// The client's socket of control.json; empty: there is none, or the run has ended.
 std::string socket_of(const fs::path& folder) {
-    std::ifstream in(folder / "control.json", std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const auto note = json::parse(text, nullptr, false);
+    const auto note = json::parse(read_whole_file(folder / "control.json").value_or(""), nullptr, false);
     return note.is_object() && note.contains("control") && note["control"].is_string()
                ? note["control"].get<std::string>()
                : std::string();

@@ -368,5 +368,5 @@ class App {
 }
 
 const app = new App();
-window.puckloopView = app;  // for tests, and for who looks behind the page
+window.puckloopView = app;  // for tests, and for who looks into the page
 app.begin().catch((error) => app.trouble(error));

@@ -3,7 +3,7 @@
 
 const livePollMilliseconds = 100;
 
-/** Rows "t,name,x,y,heading" behind what paths have; new names become new paths. */
+/** Rows "t,name,x,y,heading" after what paths have; new names become new paths. */
 export function appendRows(paths, text, robot) {
   const byName = new Map(paths.filter((path) => path.robot === robot).map((path) => [path.name, path]));
   for (const line of text.split('\n')) {
@@ -69,10 +69,10 @@ export class Live {
     const edge = this.run.duration;
     if (!this.atEdge) return now;
     if (!this.state.playing || this.state.speed === 0) return edge;
-    // Half a second behind is caught up with at once; else a little faster than the run while it is ahead.
-    const behind = edge - now;
-    if (behind > 1 * this.state.speed) return edge - 0.2 * this.state.speed;
-    return Math.min(edge, now + (this.state.speed * milliseconds * (behind > 0.25 * this.state.speed ? 1.2 : 1)) / 1000);
+    // Half a second late is caught up with at once; else a little faster than the run while it is ahead.
+    const late = edge - now;
+    if (late > 1 * this.state.speed) return edge - 0.2 * this.state.speed;
+    return Math.min(edge, now + (this.state.speed * milliseconds * (late > 0.25 * this.state.speed ? 1.2 : 1)) / 1000);
   }
 }
 

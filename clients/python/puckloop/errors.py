@@ -10,7 +10,7 @@ class StartError(PuckloopError):
 
 
 class NobodyServes(StartError):
-    """There is a socket, or its name, and no run behind it."""
+    """There is a socket, or its name, and no run listens to it."""
 
 
 class ProtocolError(PuckloopError):

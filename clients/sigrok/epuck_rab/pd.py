@@ -130,10 +130,10 @@ class Decoder(srd.Decoder):
         for bit in range(size + CHECK_BITS):
             chip = PREAMBLE + 2 * bit
             self.put(at(chip), at(chip + 2), self.out_ann, [BIT, [chips[chip]]])
-        behind = PREAMBLE + 2 * size
-        self.put(at(PREAMBLE), at(behind), self.out_ann,
+        after = PREAMBLE + 2 * size
+        self.put(at(PREAMBLE), at(after), self.out_ann,
                  [PART, ['payload %0*x' % (size // 4, payload), '%0*x' % (size // 4, payload)]])
-        self.put(at(behind), end, self.out_ann, [PART, ['check %x' % check, '%x' % check]])
+        self.put(at(after), end, self.out_ann, [PART, ['check %x' % check, '%x' % check]])
         self.put(begin, end, self.out_ann,
                  [FRAME, ['payload %0*x check %x' % (size // 4, payload, check), '%0*x' % (size // 4, payload)]])
         self.put(begin, end, self.out_python, [payload, size])

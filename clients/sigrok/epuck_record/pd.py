@@ -4,7 +4,7 @@ import struct
 import sigrokdecode as srd
 
 SESSION, ACTUATORS, SENSORS = range(3)
-LINUX_FIELD, BOARD_FIELD, WRONG = 3, 4, 5  # annotation classes behind those of the records
+LINUX_FIELD, BOARD_FIELD, WRONG = 3, 4, 5  # annotation classes after those of the records
 ADC_MOST = 4095  # 12 bits
 LONGEST_PAUSE_S = 0.02  # within a sensor record; the board was reset where it lasts longer
 
@@ -25,7 +25,7 @@ SIZES = {record: sum(struct.calcsize(code) * count for _, code, count in fields)
 
 
 def read(record, data):
-    """Name, value, first byte and byte behind it of each field; a value is a number or a tuple of numbers."""
+    """Name, value, first byte and byte after it of each field; a value is a number or a tuple of numbers."""
     at = 0
     for name, code, count in FIELDS[record]:
         end = at + struct.calcsize(code) * count

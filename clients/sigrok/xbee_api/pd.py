@@ -28,7 +28,7 @@ def printed(name, data):
 
 
 def read(data):
-    """The frame's name, and of each field its name, text, first byte and byte behind it."""
+    """The frame's name, and of each field its name, text, first byte and byte after it."""
     name, fields = TYPES.get(data[0], ('other', ()))
     if len(data) - 1 < sum(size or 0 for _, size in fields) or not fields:
         return 'other', [('type', '%02x' % data[0], 0, 1), ('data', printed('data', data[1:]), 1, len(data))]

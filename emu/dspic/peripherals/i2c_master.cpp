@@ -95,7 +95,7 @@ double I2cMaster::duration_of(Activity activity) {
 }
 
 // An activity that ends by itself. While the bus still has what was switched off, it waits (deviation 4).
-void I2cMaster::begin(Activity activity, Cycle from) {
+void I2cMaster::begin_at(Activity activity, Cycle from) {
     state_.activity = activity;
     state_.ends = state_.stop_when_answered ? kNoCycle : from + clocks(duration_of(activity));
     plan();
@@ -177,7 +177,7 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     if (state_.stop_when_answered) {
         state_.stop_when_answered = false;
         send(I2cPhaseKind::Stop, 0, 0, clock_.time_of(at));
-        if (state_.activity != Activity::Idle) begin(state_.activity, at + 1);
+        if (state_.activity != Activity::Idle) begin_at(state_.activity, at + 1);
         return;
     }
     state_.buffer_empty = kNoCycle;
@@ -231,7 +231,7 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
     self.around_.sfr.store(address, value, mask);
     stat |= kI2CxSTAT["TBF"] | kI2CxSTAT["TRSTAT"];
     if (!state.owns_bus) {
-        self.begin(Activity::Transmit, self.around_.now + 1);
+        self.begin(Activity::Transmit);
         return;
     }
     state.activity = Activity::Transmit;
@@ -289,10 +289,10 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             return;
         }
         con |= kI2CxCON["SEN"];
-        self.begin(Activity::Start, self.around_.now + 1);
+        self.begin(Activity::Start);
     } else if (asked & kI2CxCON["RSEN"]) {
         con |= kI2CxCON["RSEN"];
-        self.begin(Activity::Restart, self.around_.now + 1);
+        self.begin(Activity::Restart);
     } else if (asked & kI2CxCON["PEN"]) {
         con |= kI2CxCON["PEN"];
         const bool owned = state.owns_bus;
@@ -301,7 +301,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             state.activity = Activity::Stop;
             state.awaits_answer = true;
         } else {
-            self.begin(Activity::Stop, self.around_.now + 1);
+            self.begin(Activity::Stop);
         }
         if (owned) self.send(I2cPhaseKind::Stop, 0, 0, start);
     } else if (asked & kI2CxCON["RCEN"]) {
@@ -309,7 +309,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         if (!state.owns_bus) {  // an idle bus reads as ones
             self.reg(kRcv) = 0xFF;
             self.reg(kStat) |= kI2CxSTAT["RBF"];
-            self.begin(Activity::Receive, self.around_.now + 1);
+            self.begin(Activity::Receive);
             return;
         }
         self.end_byte_read(start);
@@ -325,7 +325,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     } else {
         con |= kI2CxCON["ACKEN"];
         state.acknowledged = !(con & kI2CxCON["ACKDT"]);
-        if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge, self.around_.now + 1);
+        if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge);
         state.activity = Activity::Acknowledge;
         state.awaits_answer = true;
         state.received = false;

@@ -103,7 +103,8 @@ class I2cMaster {
     double clock_cycles() const;  ///< one SCL period in instruction cycles
     Cycle clocks(double count) const;
     static double duration_of(Activity activity);  ///< SCL periods
-    void begin(Activity activity, Cycle from);
+    void begin(Activity activity) { begin_at(activity, around_.now + 1); }
+    void begin_at(Activity activity, Cycle from);
     /// A byte of its own is on the bus.
     bool busy() const { return state_.awaits_answer && !state_.stop_when_answered; }
     void send(cosim::I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cosim::Time start);

@@ -92,8 +92,8 @@ class Kept:
                 return False, self._texts.get(key, b"")[-200:]
             run.step(to=min(end, run.time_ps + _LOOK_PS) / 1e12)
             self.drain()
-        behind = at + len(wanted)
-        used, self._texts[key] = self._texts[key][:behind], self._texts[key][behind:]
+        after = at + len(wanted)
+        used, self._texts[key] = self._texts[key][:after], self._texts[key][after:]
         return True, used
 
 

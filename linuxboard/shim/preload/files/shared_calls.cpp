@@ -72,8 +72,7 @@ int operate(int set, sembuf* theirs, std::size_t count, Time deadline) {
     std::vector<sembuf> operations(count);
     if (!copy_from_program(operations.data(), theirs, count * sizeof(sembuf))) return -1;
     if (never_waits(operations.data(), count)) return REAL(semop)(set, theirs, count);
-    // Without waiting, and with the program's own wish not to wait kept apart: the first that cannot be done
-    // decides, so one that may not wait ends the call.
+    // One that may wait makes the whole call wait.
     std::vector<sembuf> now_or_never = operations;
     for (sembuf& operation : now_or_never)
         operation.sem_flg = static_cast<short>(operation.sem_flg | IPC_NOWAIT);
@@ -86,14 +85,20 @@ bool queue_never_waits(mqd_t queue) {
     return mq_getattr(queue, &attributes) != 0 || (attributes.mq_flags & O_NONBLOCK) != 0;
 }
 
-/// CLOCK_REALTIME, as the calls have it; false: not a time.
+/// False with errno: not there, or not a time.
+bool get_time(timespec& time, const timespec* theirs) {
+    if (!get_from_program(time, theirs)) return false;
+    if (is_valid(time)) return true;
+    errno = EINVAL;
+    return false;
+}
+
+/// `theirs` on CLOCK_REALTIME, as the calls of message queues have it; nullptr is never.
 bool deadline_of(const timespec* theirs, Time& deadline) {
     timespec time{};
-    if (!get_from_program(time, theirs)) return false;
-    if (!is_valid(time)) {
-        errno = EINVAL;
-        return false;
-    }
+    deadline = kNever;
+    if (theirs == nullptr) return true;
+    if (!get_time(time, theirs)) return false;
     deadline = absolute_deadline(CLOCK_REALTIME, time);
     return true;
 }
@@ -156,11 +161,7 @@ SHIM_EXPORT int semtimedop(int set, sembuf* operations, size_t count, const time
     if (!conducted()) return REAL(semtimedop)(set, operations, count, timeout);
     if (timeout == nullptr) return operate(set, operations, count, kNever);
     timespec time{};
-    if (!get_from_program(time, timeout)) return -1;
-    if (!is_valid(time)) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (!get_time(time, timeout)) return -1;
     return operate(set, operations, count, time_after(from_timespec(time)));
 }
 
@@ -174,33 +175,43 @@ SHIM_EXPORT int msgsnd(int queue, const void* message, size_t size, int flags) {
     return try_again([&] { return REAL(msgsnd)(queue, message, size, flags | IPC_NOWAIT); }, EAGAIN);
 }
 
+namespace {
+/// `until` nullptr: however long it takes.
+ssize_t receive_message(mqd_t queue, char* message, size_t size, unsigned* priority, const timespec* until) {
+    Time deadline = kNever;
+    if (!deadline_of(until, deadline)) return -1;
+    return try_again([&] { return REAL(mq_timedreceive)(queue, message, size, priority, &kAtOnce); },
+                     ETIMEDOUT, deadline, ETIMEDOUT);
+}
+
+int send_message(mqd_t queue, const char* message, size_t size, unsigned priority, const timespec* until) {
+    Time deadline = kNever;
+    if (!deadline_of(until, deadline)) return -1;
+    return try_again([&] { return REAL(mq_timedsend)(queue, message, size, priority, &kAtOnce); }, ETIMEDOUT,
+                     deadline, ETIMEDOUT);
+}
+}  // namespace
+
 SHIM_EXPORT ssize_t mq_receive(mqd_t queue, char* message, size_t size, unsigned* priority) {
     if (!conducted() || queue_never_waits(queue)) return REAL(mq_receive)(queue, message, size, priority);
-    return try_again([&] { return REAL(mq_timedreceive)(queue, message, size, priority, &kAtOnce); },
-                     ETIMEDOUT);
+    return receive_message(queue, message, size, priority, nullptr);
 }
 
 SHIM_EXPORT ssize_t mq_timedreceive(mqd_t queue, char* message, size_t size, unsigned* priority,
                                     const timespec* until) {
     if (!conducted() || queue_never_waits(queue))
         return REAL(mq_timedreceive)(queue, message, size, priority, until);
-    Time deadline = kNever;
-    if (until != nullptr && !deadline_of(until, deadline)) return -1;
-    return try_again([&] { return REAL(mq_timedreceive)(queue, message, size, priority, &kAtOnce); },
-                     ETIMEDOUT, deadline, ETIMEDOUT);
+    return receive_message(queue, message, size, priority, until);
 }
 
 SHIM_EXPORT int mq_send(mqd_t queue, const char* message, size_t size, unsigned priority) {
     if (!conducted() || queue_never_waits(queue)) return REAL(mq_send)(queue, message, size, priority);
-    return try_again([&] { return REAL(mq_timedsend)(queue, message, size, priority, &kAtOnce); }, ETIMEDOUT);
+    return send_message(queue, message, size, priority, nullptr);
 }
 
 SHIM_EXPORT int mq_timedsend(mqd_t queue, const char* message, size_t size, unsigned priority,
                              const timespec* until) {
     if (!conducted() || queue_never_waits(queue))
         return REAL(mq_timedsend)(queue, message, size, priority, until);
-    Time deadline = kNever;
-    if (until != nullptr && !deadline_of(until, deadline)) return -1;
-    return try_again([&] { return REAL(mq_timedsend)(queue, message, size, priority, &kAtOnce); }, ETIMEDOUT,
-                     deadline, ETIMEDOUT);
+    return send_message(queue, message, size, priority, until);
 }
