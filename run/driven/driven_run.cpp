@@ -6,6 +6,7 @@
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
 #include "run/control/control_place.h"
+#include "run/driven/possible_faults.h"
 #include "run/factory/node_factory.h"
 #include "run/snapshots/origin.h"
 #include "scenarios/reader/events/event_tables.h"
@@ -252,6 +253,10 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
     }
     if (op == "read") {
         answered.update(board(request).read(request));
+    } else if (op == "where") {
+        answered.update(board(request).where());
+    } else if (op == "faults") {
+        answered.update(possible_faults(setup_.scenario));
     } else if (op == "write") {
         board(request).write(request);
         deeds_.push_back({now_, request});
