@@ -1,20 +1,13 @@
 #include "view/live/driver.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 
 namespace puckloop::view {
 
@@ -28,60 +21,20 @@ constexpr int kMostStepMs = 10'000;
 constexpr double kMostUntilMs = 60'000;
 constexpr double kMostSpeed = 1000.0;
 constexpr std::size_t kLongestCommand = 1000, kLongestName = 64;
-constexpr std::size_t kLongestReply = 16U << 20;
-
-/// The client's socket of control.json; empty: there is none, or the run has ended.
-std::string socket_of(const fs::path& folder) {
-    const auto note = json::parse(read_whole_file(folder / "control.json").value_or(""), nullptr, false);
-    return note.is_object() && note.contains("control") && note["control"].is_string()
-               ? note["control"].get<std::string>()
-               : std::string();
-}
 
 }  // namespace
 
 bool Driver::is_there(const fs::path& folder) {
-    return !socket_of(folder).empty();
+    return ControlClient::is_there(folder);
 }
 
-Driver::Driver(const fs::path& folder) {
-    const std::string path = socket_of(folder);
-    sockaddr_un place{};
-    place.sun_family = AF_UNIX;
-    if (path.empty() || path.size() >= sizeof place.sun_path)
-        throw InputError(folder.string(), "", "no run that takes a client goes on there",
-                         "`puckloop run SCENARIO --control`");
-    std::memcpy(place.sun_path, path.c_str(), path.size() + 1);
-    socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const timeval patience{10, 0};  // for its first line: a run that has a client lets others wait
-    if (socket_ < 0 || ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
-        ::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
-        const int reason = errno;
-        if (socket_ >= 0) ::close(socket_);
-        throw InputError(folder.string(), "",
-                         fmt::format("its run does not answer: {}", std::strerror(reason)),
-                         "a run that goes on and has no other client");
-    }
-    try {
-        const auto first = json::parse(ask(""), nullptr, false);
-        if (!first.is_object() || first.value("protocol", 0) != 1)
-            throw InputError(folder.string(), "", "its run speaks another control protocol",
-                             "the same version of puckloop for both");
-        time_s_ = first.value("time_s", 0.0);
-        auto possible = json::parse(ask(R"({"op": "faults"})"), nullptr, false);
-        if (!possible.is_object()) possible = json::object();
-        possible["boards"] = first.value("boards", json::array());
-        possible_ = possible.dump(-1, ' ', false, json::error_handler_t::replace);
-    } catch (const RunError&) {
-        ::close(socket_);
-        throw InputError(folder.string(), "", "its run does not answer",
-                         "a run that has no other client: one drives at a time");
-    } catch (...) {
-        ::close(socket_);
-        throw;
-    }
-    const timeval none{0, 0};
-    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &none, sizeof none);
+Driver::Driver(const fs::path& folder) : run_(folder) {
+    const auto first = json::parse(run_.greeting());
+    time_s_ = first.value("time_s", 0.0);
+    auto possible = json::parse(run_.ask(R"({"op": "faults"})"), nullptr, false);
+    if (!possible.is_object()) possible = json::object();
+    possible["boards"] = first.value("boards", json::array());
+    possible_ = possible.dump(-1, ' ', false, json::error_handler_t::replace);
     thread_ = std::thread([this] { run(); });
 }
 
@@ -92,32 +45,6 @@ Driver::~Driver() {
         changed_.notify_all();
     }
     thread_.join();
-    ::close(socket_);
-}
-
-/// Sends a line, unless it is empty, and takes the next one. Throws RunError when the run has closed the
-/// line.
-std::string Driver::ask(const std::string& request) {
-    const std::string line = request.empty() ? "" : request + "\n";
-    for (std::size_t sent = 0; sent < line.size();) {
-        const ::ssize_t now = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
-        if (now < 0 && errno == EINTR) continue;
-        if (now <= 0) throw RunError("the run has closed the line");
-        sent += static_cast<std::size_t>(now);
-    }
-    while (true) {
-        if (const std::size_t end = received_.find('\n'); end != std::string::npos) {
-            std::string answer = received_.substr(0, end);
-            received_.erase(0, end + 1);
-            return answer;
-        }
-        if (received_.size() > kLongestReply) throw RunError("a reply of the run is too long");
-        char piece[65536];
-        const ::ssize_t got = ::recv(socket_, piece, sizeof piece, 0);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) throw RunError("the run has closed the line");
-        received_.append(piece, static_cast<std::size_t>(got));
-    }
 }
 
 void Driver::run() noexcept {
@@ -206,11 +133,11 @@ void Driver::look() {
     for (json& item : items) {
         item["op"] = "read";
         item["node"] = board;
-        json reply = json::parse(ask(item.dump()), nullptr, false);
+        json reply = json::parse(run_.ask(item.dump()), nullptr, false);
         if (!reply.is_object()) throw RunError("a reply of the run that is none");
         values.push_back(std::move(reply));
     }
-    const json where = json::parse(ask(json{{"op", "where"}, {"node", board}}.dump()), nullptr, false);
+    const json where = json::parse(run_.ask(json{{"op", "where"}, {"node", board}}.dump()), nullptr, false);
     const std::lock_guard lock(mutex_);
     look_ = json{{"board", board}, {"time_s", time_s_}, {"where", where}, {"values", values}}.dump(
         -1, ' ', false, json::error_handler_t::replace);
@@ -219,7 +146,7 @@ void Driver::look() {
 void Driver::until(const Work& work) {
     const json asked{
         {"op", "step"}, {"for", fmt::format("{} ms", work.ms)}, {"until", json::parse(work.text)}};
-    const auto reply = json::parse(ask(asked.dump()), nullptr, false);
+    const auto reply = json::parse(run_.ask(asked.dump()), nullptr, false);
     if (!reply.is_object()) throw RunError("a reply of the run that is none");
     const std::lock_guard lock(mutex_);
     time_s_ = reply.value("time_s", time_s_);
@@ -235,7 +162,7 @@ void Driver::until(const Work& work) {
 
 /// The run is begun again from an earlier time or with a fault.
 void Driver::restart(const std::string& request, const std::string& command) {
-    const auto reply = json::parse(ask(request), nullptr, false);
+    const auto reply = json::parse(run_.ask(request), nullptr, false);
     if (!reply.is_object()) throw RunError("a reply of the run that is none");
     const std::lock_guard lock(mutex_);
     time_s_ = reply.value("time_s", time_s_);
@@ -255,7 +182,7 @@ void Driver::note(const std::string& command, const std::string& answer, bool re
 
 void Driver::step(int ms) {
     const auto reply =
-        json::parse(ask(json{{"op", "step"}, {"for", fmt::format("{} ms", ms)}}.dump()), nullptr, false);
+        json::parse(run_.ask(json{{"op", "step"}, {"for", fmt::format("{} ms", ms)}}.dump()), nullptr, false);
     if (!reply.is_object()) throw RunError("a reply of the run that is none");
     const std::lock_guard lock(mutex_);
     time_s_ = reply.value("time_s", time_s_);
@@ -277,14 +204,15 @@ void Driver::step(int ms) {
 }
 
 void Driver::act(const std::string& command) {
-    const auto reply = json::parse(ask(json{{"op", "act"}, {"command", command}}.dump()), nullptr, false);
+    const auto reply =
+        json::parse(run_.ask(json{{"op", "act"}, {"command", command}}.dump()), nullptr, false);
     const std::lock_guard lock(mutex_);
     const bool ok = reply.is_object() && reply.value("ok", false);
     note(command, ok ? "" : reply.is_object() ? reply.value("error", "refused") : "refused", !ok);
 }
 
 void Driver::end_run() {
-    const auto reply = json::parse(ask(json{{"op", "end"}}.dump()), nullptr, false);
+    const auto reply = json::parse(run_.ask(json{{"op", "end"}}.dump()), nullptr, false);
     const std::lock_guard lock(mutex_);
     if (reply.is_object()) {
         time_s_ = reply.value("time_s", time_s_);

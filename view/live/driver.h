@@ -3,6 +3,8 @@
 // things done to its world. One client of the control protocol (docs/control_protocol.md), for all pages of a
 // viewer.
 
+#include "view/live/control_client.h"
+
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -65,7 +67,6 @@ class Driver {
     };
     void run() noexcept;
     bool serve();
-    std::string ask(const std::string& request);
     void carry_out(const Work& work);
     void step(int ms);
     void act(const std::string& command);
@@ -75,8 +76,7 @@ class Driver {
     void note(const std::string& command, const std::string& answer, bool refused);
     void end_run();
 
-    int socket_ = -1;
-    std::string received_;
+    ControlClient run_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Work> waiting_;
