@@ -26,6 +26,9 @@ std::vector<std::string> words_of(const std::string& line) {
     return words;
 }
 
+/// Where a script that gives no end of its own ends, in simulated time; as `exec` has it.
+constexpr double kScriptSeconds = 60.0;
+
 std::atomic<bool> g_stop{false};
 
 void on_stop_signal(int) {
@@ -152,7 +155,10 @@ std::vector<std::string> Console::complete(const std::string& line) const {
 }
 
 int run_debugger(const DebuggerOptions& options) {
-    Session session(options);
+    DebuggerOptions bounded = options;
+    // A script cannot press Ctrl-C.
+    if (!LineEditor::at_terminal() && !bounded.exec.seconds) bounded.exec.seconds = kScriptSeconds;
+    Session session(bounded);
     struct sigaction action {};
     action.sa_handler = on_stop_signal;
     sigaction(SIGINT, &action, nullptr);

@@ -102,14 +102,20 @@ void Console::stopped(const Stop& stop) {
 }
 
 void Console::move(const Words& words, const std::function<Stop()>& once) {
-    if (session_.over()) throw InputError("", words[0], "the run is over", "quit, and begin another");
+    const auto act = find(words[0])->act;
+    const bool backward = act == &Console::back || act == &Console::back_into ||
+                          act == &Console::back_instruction || act == &Console::reverse_continue;
+    if (session_.over() && !backward)
+        throw InputError("", words[0], "the run is over", "a way back, or quit");
+    session_.revive();
+    interrupted_();  // Ctrl-C at the prompt is none of the program's
     const std::size_t count = times(words);
     last_ = words[0];
     Stop stop;
     for (std::size_t i = 0; i < count; ++i) {
         stop = once();
         const bool goes_on =
-            stop.why == Stop::Why::Step || (find(words[0])->act == &Console::run && i + 1 < count &&
+            stop.why == Stop::Why::Step || (act == &Console::run && i + 1 < count &&
                                             stop.why != Stop::Why::End && stop.why != Stop::Why::Interrupt);
         if (!goes_on) break;
     }

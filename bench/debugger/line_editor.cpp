@@ -55,7 +55,7 @@ std::string history_place() {
 }  // namespace
 
 LineEditor::LineEditor(std::function<std::vector<std::string>(const std::string& line)> complete)
-    : interactive_(::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) {
+    : interactive_(at_terminal()) {
     if (!interactive_) return;
     g_complete = std::move(complete);
     rl_readline_name = const_cast<char*>("puckloop");
@@ -65,6 +65,10 @@ LineEditor::LineEditor(std::function<std::vector<std::string>(const std::string&
     stifle_history(kMostHistory);
     history_file_ = history_place();
     if (!history_file_.empty()) read_history(history_file_.c_str());
+}
+
+bool LineEditor::at_terminal() {
+    return ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0;
 }
 
 LineEditor::~LineEditor() {

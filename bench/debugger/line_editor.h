@@ -16,7 +16,8 @@ class LineEditor {
     LineEditor(const LineEditor&) = delete;
     LineEditor& operator=(const LineEditor&) = delete;
 
-    /// Standard input is a terminal.
+    /// Standard input and output are a terminal.
+    static bool at_terminal();
     bool interactive() const { return interactive_; }
     /// The next line without its end; nothing: there are no more. In a script the prompt and line are shown,
     /// so that what is printed reads like a session.

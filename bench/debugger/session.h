@@ -59,6 +59,8 @@ class Session {
     /// The run is over, or was never begun: nothing moves any more.
     bool over() const { return over_; }
     void end() { over_ = true; }
+    /// It went back from its end.
+    void revive() { over_ = false; }
     /// What the bench reports when it is over.
     std::string summary() { return debugged_->summary(); }
     void finish();

@@ -127,9 +127,15 @@ class MainBoard(Debugged):
         self.assertIn("no source lines", said[5])
 
     def test_the_end_of_a_run(self):
-        said = self.debug(EPUCK / "epuck.elf", "--seconds", "0.01", script=["continue", "print LATA", "step"], status=1)
+        said = self.debug(EPUCK / "epuck.elf", "--seconds", "0.01", status=1,
+                          script=["continue", "print LATA", "step", "back", "stepi", "back-instruction", "continue"])
+        for place in (1, 3, 7):
+            self.assertIn("the run is over", said[place])
+        self.assertEqual(said[6].splitlines()[0], said[4].splitlines()[0])
+        # A script that gives no end of its own has one.
+        said = self.debug(EPUCK / "epuck.hex", script=["continue", "time"])
         self.assertIn("the run is over", said[1])
-        self.assertIn("the run is over", said[3])
+        self.assertIn("60.000", said[2])
 
 
     def test_the_documented_session(self):

@@ -37,7 +37,9 @@ void declare_debug(Command& app, int& status) {
     command->add_option("--sources", options->sources, "folder with source files; repeatable")
         ->allow_extra_args(false)
         ->type_name("DIR");
-    command->add_option("--seconds", o.seconds, "the run ends there, in simulated time (without it never)")
+    command
+        ->add_option("--seconds", o.seconds,
+                     "the run ends there, in simulated time (without it never; of a script after 60)")
         ->check(seconds_between(0.0, kLongestRun))
         ->type_name("TIME");
     command->add_option("--uart1", o.uart[0], "pty, tcp:PORT (on 127.0.0.1) or script:FILE");
