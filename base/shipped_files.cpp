@@ -1,6 +1,7 @@
 #include "base/shipped_files.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -11,17 +12,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The folders in which shipped files may be, the nearest to the program first.
-std::vector<fs::path> roots() {
+/// The folder of the running program and those above it, the nearest first.
+std::vector<fs::path> folders_above() {
     constexpr int kHighest = 6;  // from a test's folder to the sources around the build
     std::vector<fs::path> list;
     std::error_code error;
     fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (int i = 0; i < kHighest && folder.has_relative_path(); ++i, folder = folder.parent_path()) {
+    for (int i = 0; i < kHighest && folder.has_relative_path(); ++i, folder = folder.parent_path())
+        list.push_back(folder);
+    return list;
+}
+
+/// The folders in which shipped files may be, the nearest to the program first. A build outside of its
+/// sources has a link to them as its share/puckloop.
+std::vector<fs::path> roots() {
+    std::vector<fs::path> list;
+    if (const char* set = std::getenv("PUCKLOOP_DATA"); set != nullptr && *set != '\0')
+        list.emplace_back(set);
+    for (const fs::path& folder : folders_above()) {
         list.push_back(folder / "share" / "puckloop");
         list.push_back(folder);
     }
-    list.emplace_back(PUCKLOOP_SOURCE_FOLDER);  // a build outside of its sources
     return list;
 }
 
@@ -31,6 +42,18 @@ fs::path shipped_file(std::string_view name) {
     std::error_code error;
     for (const fs::path& root : roots())
         if (const fs::path file = root / name; fs::exists(file, error)) return file.lexically_normal();
+    return {};
+}
+
+fs::path shipped_program(std::string_view file_name, std::string_view build_folder) {
+    const std::vector<fs::path> folders = folders_above();
+    if (folders.empty()) return {};
+    std::error_code error;
+    if (const fs::path beside = folders.front() / file_name; fs::is_regular_file(beside, error))
+        return beside;
+    for (const fs::path& folder : folders)
+        for (const fs::path& place : {folder / "lib" / "puckloop", folder / build_folder})
+            if (const fs::path file = place / file_name; fs::is_regular_file(file, error)) return file;
     return {};
 }
 

@@ -1,32 +1,21 @@
 #include "bench/debug_run.h"
 
-#include "bench/history.h"
-
 namespace puckloop::exec {
-
-namespace {
 
 using debug::Resume;
 using debug::Stop;
 
-/// How long is repeated before anybody asks whether the debugger wants to stop.
-constexpr cosim::Time kSlice = 5 * cosim::kMillisecond;
-
-}  // namespace
-
 DebugRun::DebugRun(Bench& bench, const std::string& where)
     : bench_(bench),
-      history_(*bench.history()),
-      chip_(bench.target().debug_chip()),
-      control_(*chip_),
+      debugged_(bench),
       socket_("--gdb", where),
-      session_(socket_, *this, [this] { return interrupted_ && interrupted_(); }) {}
+      session_(socket_, debugged_, [this] { return interrupted_ && interrupted_(); }) {}
 
 Bench::End DebugRun::run(cosim::Time budget, bool paced) {
-    budget_ = budget;
-    paced_ = paced;
     interrupted_ = std::move(bench_.interrupted);
-    history_.begin(*chip_);
+    debugged_.wants_stop = [this] { return session_.wants_stop(); };
+    debugged_.wants_end = interrupted_;
+    debugged_.begin(budget, paced);
     if (!socket_.accept(interrupted_)) return Bench::End::Interrupted;
     Stop stop;
     while (true) {
@@ -34,92 +23,24 @@ Bench::End DebugRun::run(cosim::Time budget, bool paced) {
         case Resume::Kill:
             return Bench::End::Interrupted;
         case Resume::Detach:
-            control_.clear();
-            stop = forward(false);
+            debugged_.control().clear();
+            stop = debugged_.forward(false);
             break;
         case Resume::Step:
-            stop = forward(true);
+            stop = debugged_.forward(true);
             break;
         case Resume::Continue:
-            stop = forward(false);
+            stop = debugged_.forward(false);
             break;
         case Resume::ReverseStep:
-            stop = backward(true);
+            stop = debugged_.backward(true);
             break;
         case Resume::ReverseContinue:
-            stop = backward(false);
+            stop = debugged_.backward(false);
             break;
         }
-        if (stop.why == Stop::Why::End) return end_;
+        if (stop.why == Stop::Why::End) return debugged_.end();
     }
-}
-
-bool DebugRun::repeat() {
-    while (history_.in_past()) {
-        if (history_.repeat_for(kSlice)) return true;
-        if (session_.wants_stop()) return false;
-    }
-    return true;
-}
-
-Stop DebugRun::forward(bool step) {
-    control_.begin(step);
-    const bool repeated = repeat();
-    if (!repeated || history_.in_past()) return control_.end().value_or(Stop{Stop::Why::Interrupt});
-    bool wanted = false;
-    bench_.interrupted = [this, &wanted] {
-        history_.note();
-        wanted = session_.wants_stop();
-        return wanted || (interrupted_ && interrupted_());
-    };
-    if (paced_) bench_.pace_by_wall_clock();
-    end_ = bench_.run_until(budget_);
-    bench_.interrupted = nullptr;
-    const std::optional<Stop> stop = control_.end();
-    if (end_ == Bench::End::Address) return stop.value_or(Stop{Stop::Why::Interrupt});
-    if (wanted) return Stop{Stop::Why::Interrupt};
-    return Stop{Stop::Why::End};
-}
-
-Stop DebugRun::backward(bool steps) {
-    const std::uint64_t here = chip_->cycle();
-    std::optional<std::size_t> state = history_.state_before(here);
-    if (!state) return Stop{Stop::Why::Begin};
-    while (true) {
-        history_.restore(*state);
-        control_.begin_search(steps, here);
-        const bool wanted = !repeat();
-        control_.end();
-        const auto found = control_.found();
-        history_.restore(*state);
-        if (wanted) return Stop{Stop::Why::Interrupt};
-        if (found) {
-            control_.begin_seek(found->position);
-            while (!history_.repeat_for(kSlice)) {
-            }
-            control_.end();
-            return found->stop;
-        }
-        if (*state == 0) return Stop{Stop::Why::Begin};
-        --*state;
-    }
-}
-
-std::string DebugRun::frozen() const {
-    return history_.in_past() ? "the past cannot be changed: continue to the present first" : "";
-}
-
-bool DebugRun::change(std::function<bool(debug::DebugChip&)> change) {
-    const auto done = std::make_shared<bool>();
-    history_.apply([this, change = std::move(change), done](Target&) { *done = change(*chip_); });
-    return *done;
-}
-
-std::string DebugRun::summary() {
-    std::string text = bench_.target().chip_text();
-    for (const std::string& line : bench_.target().warnings())
-        text += "warning: " + line + "\n";
-    return text;
 }
 
 }  // namespace puckloop::exec

@@ -37,6 +37,15 @@ struct ExecOptions {
     bool strict = false;  ///< what is worth a warning makes the run a failed one
 };
 
+/// What is around a bench.
+struct Surroundings {
+    bool live = false;   ///< somebody is at an end: the run is paced by the wall clock unless asked otherwise
+    bool stdio = false;  ///< an end is at standard input and output
+};
+/// Puts the ends, the bus master, the stimulus and the resets of these options to a bench whose image was
+/// read. Throws InputError.
+Surroundings surround(Bench& bench, const ExecOptions& options);
+
 /// Address to stop at, and what the user called it.
 struct StopAddress {
     std::uint32_t pc = 0;

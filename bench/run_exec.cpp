@@ -134,6 +134,36 @@ std::string symbol_at(const image::Image& image, std::uint32_t pc) {
 
 }  // namespace
 
+Surroundings surround(Bench& bench, const ExecOptions& options) {
+    if (!options.stimulus.empty())
+        bench.stimulate(
+            parse_stimulus(options.stimulus, read_text_file(options.stimulus), bench.target().signals()));
+    if (!options.i2c.empty()) bench.master(i2c_script(options.i2c, bench.target()), options.i2c_master);
+    const UartSpec specs[] = {spec_of("--uart1", options.uart[0]), spec_of("--uart2", options.uart[1])};
+    if (specs[0].kind == UartSpec::Kind::Stdio && specs[1].kind == UartSpec::Kind::Stdio)
+        throw InputError("", "--uart2", "standard input and output are already at uart1", "another end");
+    Surroundings found;
+    for (int unit = 1; unit <= 2; ++unit) {
+        const UartSpec& spec = specs[unit - 1];
+        std::unique_ptr<UartEnd> end = make_end(spec, unit, options);
+        if (!end) continue;
+        found.live |= end->live();
+        log::info("uart{}: {}{}", unit, *options.uart[static_cast<std::size_t>(unit - 1)],
+                  end->live() ? ", live: paced by the wall clock" : "");
+        found.stdio |= spec.kind == UartSpec::Kind::Stdio;
+        if (!end->announcement().empty()) {
+            std::fprintf(stderr, "uart%d: %s\n", unit, end->announcement().c_str());
+            std::fflush(stderr);
+        }
+        bench.uart(unit).attach(std::move(end));
+    }
+    std::vector<StimulusLine> resets;
+    for (const double seconds : options.resets)
+        resets.push_back({cosim::from_seconds(seconds), StimulusLine::kReset, 1.0});
+    bench.stimulate(resets);
+    return found;
+}
+
 int run_exec(const ExecOptions& options) {
     if (!options.gdb.empty() && options.instruments.any())
         throw InputError("", "--gdb", "a debugger and --trace, --watch or --stats do not go together",
@@ -157,32 +187,7 @@ int run_exec(const ExecOptions& options) {
             if (options.gdb.empty()) bench.target().stop_at(stop.pc);
         }
     }
-    if (!options.stimulus.empty())
-        bench.stimulate(
-            parse_stimulus(options.stimulus, read_text_file(options.stimulus), bench.target().signals()));
-    if (!options.i2c.empty()) bench.master(i2c_script(options.i2c, bench.target()), options.i2c_master);
-    const UartSpec specs[] = {spec_of("--uart1", options.uart[0]), spec_of("--uart2", options.uart[1])};
-    if (specs[0].kind == UartSpec::Kind::Stdio && specs[1].kind == UartSpec::Kind::Stdio)
-        throw InputError("", "--uart2", "standard input and output are already at uart1", "another end");
-    bool live = false, stdio = false;
-    for (int unit = 1; unit <= 2; ++unit) {
-        const UartSpec& spec = specs[unit - 1];
-        std::unique_ptr<UartEnd> end = make_end(spec, unit, options);
-        if (!end) continue;
-        live |= end->live();
-        log::info("uart{}: {}{}", unit, *options.uart[static_cast<std::size_t>(unit - 1)],
-                  end->live() ? ", live: paced by the wall clock" : "");
-        stdio |= spec.kind == UartSpec::Kind::Stdio;
-        if (!end->announcement().empty()) {
-            std::fprintf(stderr, "uart%d: %s\n", unit, end->announcement().c_str());
-            std::fflush(stderr);
-        }
-        bench.uart(unit).attach(std::move(end));
-    }
-    std::vector<StimulusLine> resets;
-    for (const double seconds : options.resets)
-        resets.push_back({cosim::from_seconds(seconds), StimulusLine::kReset, 1.0});
-    bench.stimulate(resets);
+    const auto [live, stdio] = surround(bench, options);
     std::optional<board::NvmFile> nvm;
     if (!options.nvm.empty())
         nvm.emplace(options.nvm, defaults_of(options.bench.mcu, options.bench.board).mcu, image);

@@ -1,5 +1,6 @@
 // `puckloop bench --case avr`: this project's ATmega1284P and libsimavr on the same ELFs, in turn.
 
+#include "base/shipped_files.h"
 #include "benchmark/avr_speed.h"
 #include "benchmark/case_kit.h"
 
@@ -20,12 +21,11 @@ struct Subject {
 
 std::vector<Subject> subjects() {
     std::vector<Subject> list;
-    const std::filesystem::path programs = PUCKLOOP_AVR_PROGRAMS;
     for (const char* name : {"crc", "sort", "matrix"})
-        if (const auto image = programs / (std::string(name) + ".elf"); std::filesystem::exists(image))
+        if (const auto image = shipped_file(fmt::format("benchmark/avr/{}.elf", name)); !image.empty())
             list.push_back(
                 {fmt::format("avr, {}", name), "MHz", image, &avr_program_speed, &simavr_program_speed});
-    std::vector<std::filesystem::path> firmware{PUCKLOOP_TAM_FIRMWARE};
+    std::vector<std::filesystem::path> firmware{shipped_image("tam.elf")};
     if (const char* folder = std::getenv("PUCKLOOP_IMAGES"))
         firmware.push_back(std::filesystem::path(folder) / "tam_firmware.elf");
     for (const auto& image : firmware)

@@ -1,5 +1,6 @@
 #include "benchmark/avr_speed.h"
 
+#include "base/shipped_files.h"
 #include "benchmark/processor_seconds.h"
 #include "benchmark/prompt_module.h"
 #include "benchmark/timed_run.h"
@@ -65,17 +66,13 @@ class Booth : private tam::BoardListener {
 };
 
 std::optional<double> ask_simavr(const char* what, const std::filesystem::path& image, double slice_s) {
-#ifdef PUCKLOOP_SIMAVR
-    if (!std::filesystem::exists(PUCKLOOP_SIMAVR)) return std::nullopt;
+    const std::filesystem::path simavr = shipped_program("simavr_speed", "benchmark");
+    if (simavr.empty()) return std::nullopt;  // built where libsimavr is installed, and never shipped
     const ProgramTiming timing =
-        time_program({PUCKLOOP_SIMAVR, what, image.string(), fmt::format("{}", slice_s)});
+        time_program({simavr.string(), what, image.string(), fmt::format("{}", slice_s)});
     // libsimavr prints what it loads; the figure is the last line.
     const std::string text = timing.output.substr(0, timing.output.find_last_not_of('\n') + 1);
     return std::stod(text.substr(text.find_last_of('\n') + 1));
-#else
-    static_cast<void>(what), static_cast<void>(image), static_cast<void>(slice_s);
-    return std::nullopt;
-#endif
 }
 
 }  // namespace

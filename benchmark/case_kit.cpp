@@ -1,6 +1,7 @@
 #include "benchmark/case_kit.h"
 
 #include "base/error.h"
+#include "base/shipped_files.h"
 #include "benchmark/board_replay.h"
 #include "benchmark/mark_speed.h"
 #include "benchmark/process_memory.h"
@@ -44,17 +45,16 @@ std::filesystem::path Kit::own_program() {
     return error ? std::filesystem::path(kSelf) : path;
 }
 
-// Where this program was built; `bench` works from any folder.
 std::filesystem::path Kit::shipped(const std::string& scenario) {
-    return std::filesystem::path(PUCKLOOP_SCENARIOS) / scenario;
+    return shipped_file("scenarios/" + scenario);
 }
 
 std::filesystem::path Kit::main_image() {
-    return shipped("../firmware/epuck/epuck.hex");
+    return shipped_file("firmware/epuck/epuck.hex");
 }
 
 std::filesystem::path Kit::rab_image() const {
-    return options_.rab_image.empty() ? shipped("../firmware/rab/rab.hex") : options_.rab_image;
+    return options_.rab_image.empty() ? shipped_file("firmware/rab/rab.hex") : options_.rab_image;
 }
 
 void Kit::add_reference(Figure& figure) const {

@@ -89,6 +89,8 @@ class DebugChip {
     struct Field {
         std::string name;
         std::uint32_t value = 0;
+        int low = 0;   ///< its lowest bit
+        int bits = 1;  ///< how many
     };
     struct Special {
         std::uint32_t value = 0;

@@ -18,7 +18,8 @@ std::vector<DebugChip::Field> fields_of(std::string_view table, std::uint32_t va
         unsigned low = high;
         if (next != last) std::from_chars(next + 1, last, low);
         const std::uint32_t mask = (2u << (high - low)) - 1;
-        fields.push_back({std::string(entry.substr(0, colon)), value >> low & mask});
+        fields.push_back({std::string(entry.substr(0, colon)), value >> low & mask, static_cast<int>(low),
+                          static_cast<int>(high - low + 1)});
     }
     return fields;
 }

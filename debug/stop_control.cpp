@@ -1,6 +1,8 @@
 #include "debug/stop_control.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 namespace puckloop::debug {
@@ -10,7 +12,39 @@ void StopControl::remove_watch(const Watchpoint& watch) {
         watches_.erase(at);
 }
 
+void StopControl::remove_bits(const BitWatch& bits) {
+    const auto same = [&](const NotedBits& noted) { return noted.watch == bits; };
+    if (const auto at = std::find_if(bits_.begin(), bits_.end(), same); at != bits_.end()) bits_.erase(at);
+}
+
+namespace {
+
+std::uint32_t read_bits(const DebugChip& chip, const BitWatch& watch) {
+    std::array<std::uint8_t, 4> bytes{};
+    chip.read_memory(DebugChip::address_of_data(watch.start), std::span(bytes).first(watch.bytes));
+    return (bytes[0] | bytes[1] << 8 | bytes[2] << 16 | std::uint32_t{bytes[3]} << 24) & watch.mask;
+}
+
+}  // namespace
+
+void StopControl::note_bits() {
+    for (NotedBits& noted : bits_)
+        noted.value = read_bits(*chip_, noted.watch);
+}
+
+const BitWatch* StopControl::changed_bits() {
+    const BitWatch* found = nullptr;
+    for (NotedBits& noted : bits_) {
+        const std::uint32_t now = read_bits(*chip_, noted.watch);
+        const bool changed = now != noted.value && (!noted.watch.wanted || *noted.watch.wanted == now);
+        if (changed && found == nullptr) found = &noted.watch;
+        noted.value = now;
+    }
+    return found;
+}
+
 void StopControl::clear() {
+    bits_.clear();
     breaks_.clear();
     watches_.clear();
 }
@@ -22,7 +56,8 @@ void StopControl::begin(bool step) {
     begun_ = false;
     first_pc_ = chip_->pc();
     stop_.reset();
-    if (step || !watches_.empty()) {
+    note_bits();
+    if (step || !watches_.empty() || !bits_.empty()) {
         chip_->set_stops({});
         chip_->set_instrument(this, !watches_.empty());
     } else {
@@ -40,6 +75,7 @@ void StopControl::begin_inside(bool step, bool inside) {
     begun_ = inside;
     first_pc_ = chip_->pc();
     stop_.reset();
+    note_bits();
 }
 
 void StopControl::begin_search(bool steps, std::uint64_t position) {
@@ -55,6 +91,7 @@ void StopControl::search_inside(bool steps, std::uint64_t position) {
     position_ = position;
     stop_.reset();
     found_.reset();
+    note_bits();
 }
 
 void StopControl::begin_seek(std::uint64_t position) {
@@ -95,6 +132,8 @@ bool StopControl::instruction(std::uint32_t pc, std::uint64_t cycle) {
             if (!goes_on) found_ = Found{cycle, {Stop::Why::Step}};
             first_ = false;
             first_pc_ = pc;
+        } else if (const BitWatch* bits = bits_.empty() ? nullptr : changed_bits(); bits != nullptr) {
+            found_ = Found{cycle, {Stop::Why::Bits, {}, 0, *bits}};
         } else if (breaks_.contains(pc)) {
             found_ = Found{cycle, {Stop::Why::Break}};
         }
@@ -109,6 +148,10 @@ bool StopControl::run_on(std::uint32_t pc) {
     if (first && pc == first_pc_) {
         begun_ = true;
         return true;
+    }
+    if (const BitWatch* bits = bits_.empty() ? nullptr : changed_bits(); bits != nullptr) {
+        stop_ = Stop{Stop::Why::Bits, {}, 0, *bits};
+        return false;
     }
     if (ends_.contains(pc) || breaks_.contains(pc)) {
         stop_ = Stop{ends_.contains(pc) ? Stop::Why::End : Stop::Why::Break};

@@ -21,12 +21,24 @@ struct Watchpoint {
     friend bool operator==(const Watchpoint&, const Watchpoint&) = default;
 };
 
+/// Bits of data space, a register's flag say, whoever changes them: the program stops before the instruction
+/// after the change.
+struct BitWatch {
+    std::uint16_t start = 0;                ///< data address
+    std::uint32_t bytes = 1;                ///< at most 4
+    std::uint32_t mask = 0;                 ///< of these, the lowest byte first
+    std::optional<std::uint32_t> wanted{};  ///< stops only when they become this, as masked
+
+    friend bool operator==(const BitWatch&, const BitWatch&) = default;
+};
+
 /// Why the program stands still.
 struct Stop {
     enum class Why : std::uint8_t {
         Step,
         Break,
         Watch,
+        Bits,       ///< of a BitWatch
         Interrupt,  ///< the debugger asked for it
         Begin,      ///< going back ended at the first moment there is
         End         ///< the run is over
@@ -34,6 +46,7 @@ struct Stop {
     Why why = Why::Step;
     Watchpoint watch{};         ///< of Why::Watch
     std::uint16_t touched = 0;  ///< data address, of Why::Watch
+    BitWatch bits{};            ///< of Why::Bits
 };
 
 class StopControl : private chip::Instrument {
@@ -51,6 +64,8 @@ class StopControl : private chip::Instrument {
     void add_end(std::uint32_t pc) { ends_.insert(pc); }
     void add_watch(const Watchpoint& watch) { watches_.push_back(watch); }
     void remove_watch(const Watchpoint& watch);
+    void add_bits(const BitWatch& bits) { bits_.push_back({bits, 0}); }
+    void remove_bits(const BitWatch& bits);
     /// No breakpoint, no watchpoint; ends stay.
     void clear();
 
@@ -88,10 +103,18 @@ class StopControl : private chip::Instrument {
     bool instruction(std::uint32_t pc, std::uint64_t cycle) override;
     void access(std::uint16_t address, int bytes, bool write) override;
     bool run_on(std::uint32_t pc);
+    void note_bits();
+    /// The first of bits_ that has changed since; all are noted.
+    const BitWatch* changed_bits();
 
     DebugChip* chip_ = nullptr;
     std::set<std::uint32_t> breaks_, ends_;
     std::vector<Watchpoint> watches_;
+    struct NotedBits {
+        BitWatch watch;
+        std::uint32_t value = 0;
+    };
+    std::vector<NotedBits> bits_;
 
     Mode mode_ = Mode::Idle;
     bool step_ = false;

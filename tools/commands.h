@@ -14,6 +14,8 @@ void declare_replay(Command& app, int& status);
 void declare_act(Command& app, int& status);
 void declare_mcp(Command& app, int& status);
 void declare_exec(Command& app, int& status);
+void declare_debug(Command& app, int& status);
+void declare_dap(Command& app, int& status);
 void declare_step(Command& app, int& status);
 void declare_asm(Command& app, int& status);
 void declare_disasm(Command& app, int& status);
@@ -38,6 +40,8 @@ inline constexpr std::array kCommands{
     declare_act,
     declare_mcp,
     declare_exec,
+    declare_debug,
+    declare_dap,
     declare_step,
     declare_asm,
     declare_disasm,

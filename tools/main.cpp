@@ -23,6 +23,7 @@ constexpr std::array kHeadings{
     Heading{"images", "First steps"}, Heading{"schema", "First steps"},
     Heading{"run", "Run"}, Heading{"replay", "Run"}, Heading{"act", "Run"}, Heading{"mcp", "Run"},
     Heading{"exec", "Run"}, Heading{"import", "Run"},
+    Heading{"debug", "Chips and images"}, Heading{"dap", "Chips and images"},
     Heading{"step", "Chips and images"}, Heading{"asm", "Chips and images"}, Heading{"disasm", "Chips and images"},
     Heading{"upload", "Chips and images"},
     Heading{"view", "Look at what was recorded"}, Heading{"trace", "Look at what was recorded"}, Heading{"frames", "Look at what was recorded"},

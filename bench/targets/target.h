@@ -174,6 +174,8 @@ struct TargetDefaults {
     std::array<double, 2> baud{115200, 115200};  ///< of the bench's ends
     std::optional<std::uint16_t> fosc;  ///< configuration word in force on the robot; none: the image's
 };
+/// The board ("pic") whose chip a firmware file is for. Throws InputError: a scenario, none, or several.
+std::string board_for(const std::string& image);
 /// One of the two is empty, as on the command line. Throws InputError for an unknown name.
 TargetDefaults defaults_of(std::string_view mcu, std::string_view board);
 

@@ -1,5 +1,7 @@
 #include "run/files/program_path.h"
 
+#include "base/shipped_files.h"
+
 #include <cstdlib>
 #include <sstream>
 #include <unistd.h>
@@ -14,25 +16,14 @@ std::filesystem::path full_path(const std::filesystem::path& path) {
 }
 
 std::filesystem::path own_image(const std::string& board) {
-    namespace fs = std::filesystem;
-    constexpr int kHighest = 4;  // from a test's folder to the build's
-    std::error_code error;
-    fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (int i = 0; i < kHighest && folder.has_relative_path(); ++i, folder = folder.parent_path()) {
-        const fs::path image = folder / "firmware" / board / (board + ".elf");
-        if (fs::exists(image, error)) return image;
-    }
-    return {};
+    return shipped_file("firmware/" + board + "/" + board + ".elf");
 }
 
 std::filesystem::path find_program(const std::string& name, const std::filesystem::path& folder) {
     namespace fs = std::filesystem;
     if (name.find('/') != std::string::npos) return full_path(folder / name);
-    std::error_code error;
-    const fs::path self = fs::read_symlink("/proc/self/exe", error);
-    // The project's own programs are built next to this one's folder, and installed beside it.
-    for (const fs::path& beside : {self.parent_path(), self.parent_path().parent_path() / "linuxboard"})
-        if (::access((beside / name).c_str(), X_OK) == 0) return beside / name;
+    if (const fs::path own = shipped_program(name, "linuxboard"); ::access(own.c_str(), X_OK) == 0)
+        return own;
     const char* path = std::getenv("PATH");
     std::istringstream list(path ? path : "");
     for (std::string entry; std::getline(list, entry, ':');)

@@ -96,6 +96,7 @@ const std::vector<std::string> kFolders = {
     "bench/targets",
     "bench/upload",
     "bench",
+    "bench/debugger",
     "replay",
     "campaigns/statistics",
     "campaigns/jobs",

@@ -8,7 +8,7 @@ import unittest
 from kit import SOURCE, InFolder, puckloop
 
 COMMANDS = ["run", "replay", "act", "mcp", "exec", "new", "list", "check", "images", "schema", "trace", "view", "frames",
-            "faults", "experiment", "gap", "bench", "test", "step", "asm", "disasm", "upload", "help", "version"]
+            "faults", "experiment", "gap", "bench", "test", "debug", "dap", "step", "asm", "disasm", "upload", "help", "version"]
 
 
 class Help(unittest.TestCase):

@@ -18,6 +18,8 @@ class New(InFolder):
         self.assertTrue(scenario.read_text().startswith("#:schema ./scenario.schema.json\n"))
         json.loads((project / "scenario.schema.json").read_text())
         json.loads((project / ".vscode/settings.json").read_text())
+        launch = json.loads((project / ".vscode/launch.json").read_text())["configurations"][0]
+        self.assertEqual((launch["type"], launch["request"], launch["board"]), ("puckloop", "launch", "pic"))
         checked = puckloop("check", scenario)
         self.assertEqual(checked.returncode, 0, checked.stderr)
         own = subprocess.run([sys.executable, "-B", "-m", "unittest"], cwd=project, capture_output=True, text=True,

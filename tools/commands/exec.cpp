@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "bench/options.h"
 #include "emu/chip/translation_switch.h"
-#include "emu/image/chip_guess.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
@@ -81,23 +80,9 @@ struct ExecArguments {
 std::string guess_board(const std::string& image) {
     if (image.empty())
         throw InputError("", "exec", "no board is on the bench", "an image, --mcu CHIP or --board BOARD");
-    if (image.ends_with(".toml"))
-        throw InputError(image, "", "is a scenario, no firmware image", "puckloop run FILE");
-    constexpr std::pair<std::string_view, std::string_view> kBoards[] = {
-        {"dspic30f6014a", "pic"}, {"dspic33fj256gp710", "rab"}, {"atmega1284p", "tam"}};
-    std::string board, chip, fitting;
-    std::size_t count = 0;
-    for (const std::string& one : image::chips_that_fit(image)) {
-        const auto* const row = std::find_if(std::begin(kBoards), std::end(kBoards),
-                                             [&](const auto& known) { return known.first == one; });
-        fitting += (count++ == 0 ? "--board " : " or --board ") + std::string(row->second);
-        board = row->second;
-        chip = one;
-    }
-    if (count == 0)
-        throw InputError(image, "", "fits the chip of no known board", "--mcu CHIP or --board BOARD");
-    if (count > 1) throw InputError(image, "", "fits the chips of several boards", fitting);
-    fmt::print(stderr, "puckloop: {} is for the {}: --board {}\n", image, chip, board);
+    const std::string board = exec::board_for(image);
+    fmt::print(stderr, "puckloop: {} is for the {}: --board {}\n", image, exec::defaults_of("", board).mcu,
+               board);
     return board;
 }
 

@@ -1,6 +1,7 @@
-// `puckloop gap` is a program of its own, puckloop-gap beside this one: it takes as long to build as all the
+// `puckloop gap` is a program of its own, puckloop-gap: it takes as long to build as all the
 // rest, and a run needs none of it.
 
+#include "base/shipped_files.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 
@@ -14,12 +15,13 @@
 namespace puckloop::tools {
 
 int become_gap(char** words) {
-    std::error_code failed;
-    const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
-    const auto program = self.parent_path() / "puckloop-gap";
-    ::execv(program.c_str(), words);
-    std::fprintf(stderr, "puckloop: gap: %s: %s (expected the program that ./puckloop gap builds)\n",
-                 program.c_str(), std::strerror(errno));
+    constexpr const char* kName = "puckloop-gap";
+    const std::filesystem::path program = shipped_program(kName, "tools");
+    if (!program.empty()) ::execv(program.c_str(), words);
+    std::fprintf(stderr,
+                 "puckloop: gap: %s: %s (expected Debian's package puckloop-gap, or the program that "
+                 "./puckloop gap builds)\n",
+                 program.empty() ? kName : program.c_str(), std::strerror(program.empty() ? ENOENT : errno));
     return 2;
 }
 

@@ -3,6 +3,7 @@
 #include "selftest/emulate/record.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/shipped_files.h"
 #include "run/files/program_path.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
@@ -103,7 +104,8 @@ void record(const RecordRequest& request) {
 }  // namespace
 
 gap::emulate::Tools emulation_tools() {
-    return {find_program("puckloop-record", "."), PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
+    return {find_program("puckloop-record", "."), shipped_file("firmware/epuck/epuck.hex"),
+            shipped_file("firmware/rab/rab.hex")};
 }
 
 void declare_gap_record(Command& gap, int& status) {

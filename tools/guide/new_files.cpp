@@ -223,6 +223,23 @@ constexpr std::string_view kEditor = R"({
 }
 )";
 
+// "type" is what an editor's extension registers for the adapter; docs/debugger.md has the way for some.
+constexpr std::string_view kLaunch = R"({
+  "version": "0.2.0",
+  "configurations": [
+    {
+      "name": "firmware on the e-puck's main board",
+      "type": "puckloop",
+      "request": "launch",
+      "program": "${workspaceFolder}/my_firmware.elf",
+      "board": "pic",
+      "sources": ["${workspaceFolder}/firmware"],
+      "stopOnEntry": true
+    }
+  ]
+}
+)";
+
 std::string named(std::string_view text, std::string_view name) {
     constexpr std::string_view kPlace = "NAME";
     std::string result;
@@ -247,6 +264,7 @@ std::vector<NewFile> new_files(std::string_view name) {
             {".github/workflows/puckloop.yml", named(kGitHub, name)},
             {".gitlab-ci.yml", named(kGitLab, name)},
             {".vscode/settings.json", named(kEditor, name)},
+            {".vscode/launch.json", std::string(kLaunch)},
             {"scenario.schema.json", scenario_schema().dump(2) + "\n"}};
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/shipped_files.h"
 #include "cosim/core/cores.h"
 #include "linuxboard/shim/node/last_line.h"
 #include "linuxboard/shim/node/program_file.h"
@@ -57,11 +58,14 @@ void resize_shared(int fd, std::uint64_t size) {
 std::string shim_file(const LinuxSpec& spec) {
     std::string file = spec.shim;
     if (file.empty()) {
+        constexpr const char* kName = "libpuckloop_shim.so";
         const char* set = std::getenv("PUCKLOOP_SHIM");
-        file = set != nullptr ? set : PUCKLOOP_SHIM_FILE;
+        file = set != nullptr ? set : shipped_program(kName, "linuxboard/shim").string();
+        if (file.empty()) file = kName;
     }
     if (access(file.c_str(), R_OK) != 0)
-        throw InputError(file, "", "the library to preload is not there", "build the target puckloop_shim");
+        throw InputError(file, "", "the library to preload is not there",
+                         "the one that is built and installed with this program, or PUCKLOOP_SHIM");
     return file;
 }
 
