@@ -16,6 +16,7 @@ void declare_mcp(Command& app, int& status);
 void declare_exec(Command& app, int& status);
 void declare_debug(Command& app, int& status);
 void declare_dap(Command& app, int& status);
+void declare_shell(Command& app, int& status);
 void declare_step(Command& app, int& status);
 void declare_asm(Command& app, int& status);
 void declare_disasm(Command& app, int& status);
@@ -42,6 +43,7 @@ inline constexpr std::array kCommands{
     declare_exec,
     declare_debug,
     declare_dap,
+    declare_shell,
     declare_step,
     declare_asm,
     declare_disasm,

@@ -21,7 +21,7 @@ constexpr std::array kHelp{declare_test, declare_help, declare_version};
 constexpr std::array kHeadings{
     Heading{"new", "First steps"}, Heading{"list", "First steps"}, Heading{"check", "First steps"},
     Heading{"images", "First steps"}, Heading{"schema", "First steps"},
-    Heading{"run", "Run"}, Heading{"replay", "Run"}, Heading{"act", "Run"}, Heading{"mcp", "Run"},
+    Heading{"run", "Run"}, Heading{"replay", "Run"}, Heading{"act", "Run"}, Heading{"shell", "Run"}, Heading{"mcp", "Run"},
     Heading{"exec", "Run"}, Heading{"import", "Run"},
     Heading{"debug", "Chips and images"}, Heading{"dap", "Chips and images"},
     Heading{"step", "Chips and images"}, Heading{"asm", "Chips and images"}, Heading{"disasm", "Chips and images"},

@@ -35,7 +35,7 @@ char** matches(const char* word, int, int end) {
 }
 
 /// As XDG has it; empty where there is no home.
-std::string history_place() {
+std::string history_place(const std::string& name) {
     namespace fs = std::filesystem;
     const char* state = std::getenv("XDG_STATE_HOME");
     const char* home = std::getenv("HOME");
@@ -49,12 +49,13 @@ std::string history_place() {
     folder /= "puckloop";
     std::error_code error;
     fs::create_directories(folder, error);
-    return error ? std::string() : (folder / "debug_history").string();
+    return error ? std::string() : (folder / name).string();
 }
 
 }  // namespace
 
-LineEditor::LineEditor(std::function<std::vector<std::string>(const std::string& line)> complete)
+LineEditor::LineEditor(std::function<std::vector<std::string>(const std::string& line)> complete,
+                       const std::string& history)
     : interactive_(at_terminal()) {
     if (!interactive_) return;
     g_complete = std::move(complete);
@@ -63,7 +64,7 @@ LineEditor::LineEditor(std::function<std::vector<std::string>(const std::string&
     rl_attempted_completion_function = matches;
     rl_completer_word_break_characters = const_cast<char*>(" ");
     stifle_history(kMostHistory);
-    history_file_ = history_place();
+    history_file_ = history_place(history);
     if (!history_file_.empty()) read_history(history_file_.c_str());
 }
 

@@ -11,7 +11,9 @@ namespace puckloop::exec::debugger {
 class LineEditor {
   public:
     /// `complete` returns what the last word of a line may become, the line up to there being given.
-    explicit LineEditor(std::function<std::vector<std::string>(const std::string& line)> complete);
+    /// `history` names the file, among those of the user's state, that keeps lines of a terminal.
+    explicit LineEditor(std::function<std::vector<std::string>(const std::string& line)> complete,
+                        const std::string& history = "debug_history");
     ~LineEditor();
     LineEditor(const LineEditor&) = delete;
     LineEditor& operator=(const LineEditor&) = delete;

@@ -17,7 +17,7 @@ constexpr auto kRunOptions = std::to_array<std::string_view>(
      "--record",      "--live",     "--gdb",          "--save-at",    "--save",
      "--from",        "--stats",    "--set",          "--floor",      "--floor-scale",
      "--linux-start", "--control",  "--mission",      "--junit",      "--tap",
-     "--view",        "--view-port"});
+     "--view",        "--view-port", "--shell"});
 
 bool is_run_option(std::string_view word) {
     return std::any_of(kRunOptions.begin(), kRunOptions.end(), [&](std::string_view option) {

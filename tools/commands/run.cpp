@@ -20,7 +20,9 @@
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
 #include "tools/guide/scenario_name.h"
-#include "tools/viewer/viewed_run.h"
+#include "tools/shell/shell.h"
+#include "tools/viewer/client_run.h"
+#include "tools/viewer/serve.h"
 #include "traces/export.h"
 
 #include <fmt/format.h>
@@ -49,6 +51,7 @@ struct RunOptions {
     bool list_parameters = false;
     bool control = false;
     bool view = false;
+    bool shell = false;
     int view_port = 0;
 };
 
@@ -161,8 +164,8 @@ int run_scenario_file(RunOptions& options) {
     return status;
 }
 
-/// The same with a page that drives it.
-int view_scenario_file(RunOptions& options) {
+/// The same with a page or a shell that drives it.
+int run_driven(RunOptions& options) {
     options.control = true;
     const auto results = [&] {
         RunRequest request = options.request;
@@ -170,7 +173,12 @@ int view_scenario_file(RunOptions& options) {
         if (!request.from.empty()) request = going_on(request);
         return set_up(request).out;
     };
-    return run_and_view([&] { return run_scenario_file(options); }, results, options.view_port);
+    const auto client = [&](const std::filesystem::path& folder) {
+        if (options.shell) return run_shell(folder);
+        serve_live(folder.string(), options.view_port, true);
+        return 0;
+    };
+    return run_with_client({[&] { return run_scenario_file(options); }, results, client});
 }
 
 }  // namespace
@@ -306,6 +314,8 @@ void declare_run(Command& app, int& status) {
                       "open a page in the browser that shows the run and drives it: play, "
                       "step, back, faults, registers; it "
                       "stands still until the page lets it go on (docs/view.md)");
+    command->add_flag("--shell", options->shell,
+                      "drive the run by commands from the terminal or standard input (docs/view.md)");
     command
         ->add_option("--view-port", options->view_port, "port of --view on 127.0.0.1 (default: a free one)")
         ->check(whole_number_between(0, 65535))
@@ -361,7 +371,9 @@ void declare_run(Command& app, int& status) {
     command->callback([options, &status] {
         if (options->view_port != 0 && !options->view)
             throw InputError("", "--view-port", "there is no page", "--view with it");
-        status = options->view ? view_scenario_file(*options) : run_scenario_file(*options);
+        if (options->view && options->shell)
+            throw InputError("", "--shell", "the page drives", "one of them");
+        status = options->view || options->shell ? run_driven(*options) : run_scenario_file(*options);
     });
 }
 

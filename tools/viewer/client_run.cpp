@@ -1,8 +1,7 @@
-#include "tools/viewer/viewed_run.h"
+#include "tools/viewer/client_run.h"
 
 #include "base/error.h"
-#include "tools/viewer/serve.h"
-#include "view/live/driver.h"
+#include "view/live/control_client.h"
 
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -52,34 +51,36 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
-int run_and_view(const std::function<int()>& run, const std::function<fs::path()>& results, int port) {
-    const fs::path folder = results();
+int run_with_client(const RunWithClient& parts) {
+    const fs::path folder = parts.results();
     const auto before = version_of(folder / "control.json");
     std::fflush(nullptr);
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0) throw RunError(std::string("cannot start the run's process: ") + std::strerror(errno));
     if (child == 0) {
-        // A Ctrl-C is for the page, which then ends the run; a page that is killed takes it along.
+        // A Ctrl-C is for the client, which then ends the run; a client that is killed takes it along.
         ::setpgid(0, 0);
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent) ::raise(SIGTERM);
-        return run();
+        return parts.run();
     }
     constexpr auto kLook = std::chrono::milliseconds(5);
-    while (same(before, version_of(folder / "control.json")) || !view::Driver::is_there(folder)) {
+    while (same(before, version_of(folder / "control.json")) || !view::ControlClient::is_there(folder)) {
         int waited = 0;
         if (::waitpid(child, &waited, WNOHANG) == child) return status_of(waited);  // it has said why
         std::this_thread::sleep_for(kLook);
     }
+    int status = 0;
     try {
-        serve_live(folder.string(), port, true);
+        status = parts.client(folder);
     } catch (...) {
         ::kill(child, SIGTERM);
         wait_for(child);
         throw;
     }
-    return wait_for(child);
+    const int ended = wait_for(child);
+    return status != 0 ? status : ended;
 }
 
 }  // namespace puckloop::tools
