@@ -155,6 +155,8 @@ class Dap(InFolder):
         self.assertEqual((len(code), int(code[2]["address"], 16)), (6, int(begin, 16)))
         self.assertEqual(code[2]["line"], line)
         self.assertEqual(len(editor.ask("disassemble", memoryReference="0x000000", instructionOffset=-5, instructionCount=10)["instructions"]), 10)
+        far = editor.ask("disassemble", memoryReference="0x7ffffe", instructionOffset=-3, instructionCount=6)["instructions"]
+        self.assertEqual([one["presentationHint"] for one in far], ["invalid"] * 6)
         self.assertEqual(editor.end(), 0)
 
     def test_range_and_bearing_board(self):
@@ -194,8 +196,15 @@ class Dap(InFolder):
         self.assertEqual(editor.end(), 0)
 
     @unittest.skipUnless(IMAGES, "PUCKLOOP_IMAGES names no folder: real images are skipped")
-    def test_real_image_of_xc16(self):
-        editor = self.begin(pathlib.Path(IMAGES) / "demoGCtronic.X.production.elf", stopOnEntry=True)
+    def test_real_images_of_xc16_and_c30(self):
+        for name in ("demoGCtronic.X.production.elf", "randb.cof"):
+            image = pathlib.Path(IMAGES) / name
+            if not image.exists():
+                self.skipTest(f"{image} is not there")
+            self.check_real_image(image)
+
+    def check_real_image(self, image):
+        editor = self.begin(image, stopOnEntry=True)
         editor.ask("setFunctionBreakpoints", breakpoints=[{"name": "main"}])
         editor.ask("configurationDone")
         editor.event("stopped")
