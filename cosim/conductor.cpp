@@ -77,7 +77,7 @@ Outcome Conductor::State::run() {
     try {
         for (TraceSink* sink : sinks)
             sink->begin(links_);
-        if (options_.save) keep_record();
+        if (options_.save || options_.stand) keep_record();
         if (options_.from)
             go_on_from(*options_.from);
         else

@@ -59,6 +59,11 @@ struct RunOptions {
     std::function<void(RunSnapshot&)> save{};
     /// When the next snapshot after this time is due besides those; kNever: none.
     std::function<Time(Time)> save_next{};
+    /// When the run stands still next after this time, without a snapshot; kNever: not any more. All nodes
+    /// are at exactly that time then, and all that came before is in the trace. `stand` may take a snapshot
+    /// there, and give the run up by throwing Reverted.
+    std::function<Time(Time)> stand_next{};
+    std::function<void(Time, const std::function<RunSnapshot()>& snapshot)> stand{};
     /// The run goes on from here, of the same nodes and links; faults may be others, if they begin later.
     const RunSnapshot* from = nullptr;
     /// Called about five times a wall second.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace puckloop::cosim {
 
@@ -75,11 +76,21 @@ void Conductor::State::keep_record() {
 /// To the end, with a snapshot at each instant asked for that comes before it.
 void Conductor::State::run_and_save() {
     const Time begin = options_.from ? options_.from->time : 0;
-    for (Time at = next_save(begin); at != kNever; at = next_save(at)) {
+    const auto next = [&](Time after) { return std::min(next_save(after), next_stand(after)); };
+    for (Time at = next(begin), before = begin; at != kNever; before = std::exchange(at, next(at))) {
         pause_ = at;
         loop();
         if (end_ < at) break;
-        save(at);
+        finish_trace();
+        release_trace(at);
+        for (TraceSink* sink : sinks)
+            sink->flush();
+        const bool saves = at == next_save(before);
+        if (saves) {
+            RunSnapshot taken = snapshot(at);
+            options_.save(taken);
+        }
+        if (at == next_stand(before)) options_.stand(at, [&] { return snapshot(at); });
     }
     pause_ = kNever;  // nor does one that is due while nodes end hold them back
     loop();
@@ -91,11 +102,11 @@ Time Conductor::State::next_save(Time after) const {
     return options_.save_next ? std::min(next, options_.save_next(after)) : next;
 }
 
-void Conductor::State::save(Time time) {
-    finish_trace();
-    release_trace(time);
-    for (TraceSink* sink : sinks)
-        sink->flush();
+Time Conductor::State::next_stand(Time after) const {
+    return options_.stand_next ? options_.stand_next(after) : kNever;
+}
+
+RunSnapshot Conductor::State::snapshot(Time time) {
     RunSnapshot snapshot;
     snapshot.time = time;
     for (std::size_t n = 0; n < handles_.size(); ++n) {
@@ -115,7 +126,7 @@ void Conductor::State::save(Time time) {
         snapshot.stop_requests.push_back({stop, static_cast<std::uint32_t>(node)});
     if (stop_) snapshot.stop = {*stop_, static_cast<std::uint32_t>(stop_requester_)};
     snapshot.unlinked = network_->unlinked();
-    options_.save(snapshot);
+    return snapshot;
 }
 
 void Conductor::State::go_on_from(const RunSnapshot& from) {

@@ -74,7 +74,8 @@ class Conductor::State {
     void run_and_save();
     Time next_save(Time after) const;
     void keep_record();
-    void save(Time time);
+    Time next_stand(Time after) const;
+    RunSnapshot snapshot(Time time);
     void go_on_from(const RunSnapshot& from);
     void execute_again(const RunSnapshot& from, const std::vector<TraceRecord>& arrived);
     void take_stops(const RunSnapshot& from);

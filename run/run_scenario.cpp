@@ -171,33 +171,33 @@ void make_work_folders(const RunSetup& setup) {
     }
 }
 
-cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
+cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
                             const cosim::InterruptGuard* interrupt, bool driven_by_client) {
-    check_files(setup);
-    const std::vector<UsedFile> files = used_files(setup);
-    const ResultsFolder folder(setup.out, result_files(setup));
-    make_work_folders(setup);
-    ReservedFile report(setup.out / "report.json", kReportBytes);
+    check_files(planned);
+    const std::vector<UsedFile> files = used_files(planned);
+    const ResultsFolder folder(planned.out, result_files(planned));
+    make_work_folders(planned);
+    ReservedFile report(planned.out / "report.json", kReportBytes);
 
     std::error_code ignored;
-    if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", ignored);
-    const ControlPlace control(setup.control, setup.out, driven_by_client);
+    if (!planned.scenario.events.any()) std::filesystem::remove(planned.out / "events.toml", ignored);
+    const ControlPlace control(planned.control, planned.out, driven_by_client);
     raise_descriptor_limit();
     cosim::RunOptions options;
-    if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
+    if (planned.scenario.duration) options.duration = cosim::from_seconds(*planned.scenario.duration);
     options.in_process = request.in_process;
     options.realtime = request.realtime || request.paced;
-    options.pace_from = setup.ready;
-    set_threads(options, setup, request);
-    options.seed = setup.scenario.seed;
+    options.pace_from = planned.ready;
+    set_threads(options, planned, request);
+    options.seed = planned.scenario.seed;
     constexpr double kPatience = 1e9;  // a board under a debugger is silent for as long as its user thinks
     options.stall_seconds = request.gdb.empty() ? request.stall_seconds : kPatience;
     if (interrupt != nullptr) {
         options.interrupted = interrupt->flag();
         options.abort_requested = interrupt->again();
     }
-    RunLog log(setup, request);
+    RunLog log(planned, request);
     options.progress = [&](const cosim::Progress& now) {
         log.progress(now);
         if (progress) progress(now);
@@ -206,31 +206,39 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     std::optional<LiveTrace> live;
     if (!request.live.empty()) live.emplace(request.live, options.interrupted);
     std::optional<cosim::TraceCsvSink> trace;
-    use_snapshots(setup, request, trace, options);
+    use_snapshots(planned, request, trace, options);
     std::optional<cosim::TraceCsvSink> record;
+    LineWatch lines(planned.scenario.expectations);
+    const std::vector<LineWatch::Watch> nothing_seen = lines.seen();
     std::optional<RunDebuggers> debuggers;
     cosim::NodeFactory factory = make_described;
     if (!request.gdb.empty()) {
-        debuggers.emplace(setup, request, options.abort_requested);
-        debuggers->keep_past(options, trace, record);
+        debuggers.emplace(planned, request, options.abort_requested);
+        debuggers->keep_past(options, trace, record, lines);
         factory = [&](const std::string& node) { return debuggers->make_node(node); };
     }
     std::optional<DrivenRun> driven;
     if (driven_by_client) {
-        driven.emplace(setup, request, options.interrupted);
-        driven->drive(options, trace);
+        driven.emplace(planned, request, set_up, options.interrupted);
+        driven->drive(options, {trace, record, lines});
         factory = [&](const std::string& node) { return driven->make_node(node); };
     }
-    LineWatch lines(setup.scenario.expectations);
     cosim::Outcome outcome;
     do {
         const bool back = outcome.reason == cosim::EndReason::Reverted;
-        if (back) options.from = debuggers->begin_again();
+        const RunHistory::Place* kept = nullptr;
+        if (back) {
+            options.from = driven ? driven->begin_again() : debuggers->begin_again();
+            kept = driven ? driven->kept() : debuggers->kept();
+            lines.go_back(kept != nullptr ? kept->lines : nothing_seen);
+        }
+        const RunSetup& now = driven ? driven->setup() : planned;
         std::optional<cosim::Conductor> conductor;
         try {
             // From the start, so that a run that is killed has it as well.
-            if (!back) physics::write_arena_file(with_added_things(setup.scenario), setup.out / "arena.json");
-            conductor.emplace(node_specs(setup), setup.links, setup.scenario.faults, options, factory);
+            if (!back)
+                physics::write_arena_file(with_added_things(planned.scenario), planned.out / "arena.json");
+            conductor.emplace(node_specs(now), now.links, now.scenario.faults, options, factory);
         } catch (const RunError& error) {  // why it did not begin is in the report, as of one that ended so
             outcome = {};
             outcome.reason = cosim::EndReason::Failed;
@@ -239,7 +247,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
             break;
         }
         // Only now: a run whose nodes do not start has recorded nothing.
-        begin_recording(setup, request, back ? debuggers->kept() : nullptr, trace, record);
+        begin_recording(planned, request, kept, trace, record);
         conductor->add_sink(*trace);
         if (record) conductor->add_sink(*record);
         if (live) conductor->add_sink(*live);
@@ -248,6 +256,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         log.started(*conductor);
         outcome = conductor->run();
     } while (outcome.reason == cosim::EndReason::Reverted);
+    const RunSetup& setup = driven ? driven->setup() : planned;  // a client may have added faults
     if (live) end_live(*live, outcome);
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;

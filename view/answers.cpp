@@ -101,6 +101,7 @@ std::optional<Content> Answers::get(std::string_view target) const {
         if (name == "poses") return Content{kBinary, recording_.poses()};
         if (name == "beams") return Content{kBinary, events.beams()};
         if (name == "drive" && driver_ != nullptr) return Content{kJson, driver_->state()};
+        if (name == "possible" && driver_ != nullptr) return Content{kJson, driver_->possible()};
         return std::nullopt;
     }
     if (name == "texts") return texts(events, query);

@@ -5,6 +5,7 @@
 #include "view/read_events.h"
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -14,8 +15,10 @@ namespace puckloop::view {
 
 class EventPasses {
   public:
-    /// `goes_on`: the folder still grows; asked by another thread. `recording` must outlive it.
-    EventPasses(const Recording& recording, std::function<bool()> goes_on);
+    /// `goes_on`: the folder still grows. `epoch` rises when it was cut back: what is read then is given up,
+    /// and read again. Both are asked by another thread. `recording` must outlive it.
+    EventPasses(const Recording& recording, std::function<bool()> goes_on,
+                std::function<std::uint64_t()> epoch);
     ~EventPasses();
     EventPasses(const EventPasses&) = delete;
     EventPasses& operator=(const EventPasses&) = delete;
@@ -28,6 +31,7 @@ class EventPasses {
 
     const Recording& recording_;
     std::function<bool()> goes_on_;
+    std::function<std::uint64_t()> epoch_;
     std::atomic<bool> stop_ = false;
     mutable std::mutex mutex_;
     std::shared_ptr<const EventReader> latest_;

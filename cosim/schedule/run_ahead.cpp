@@ -205,11 +205,10 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
     try {
         for (Time end = until; (end = may_reach(until, inbox)) > ahead_;) {
             if (inbox.empty() || inbox.front().time >= end || (bounded_ == nullptr && !answers_late())) {
-                execute(end, inbox);
+                execute_noting(end, inbox);
             } else {
                 take_in(inbox);
             }
-            sample_lookaheads();
         }
     } catch (const std::exception&) {
         // Perhaps only because the foreseen did not come true: as far as it is sure, and no further for now.
@@ -223,25 +222,36 @@ bool RunAhead::answers_late() const {
     return std::any_of(lookaheads_.begin(), lookaheads_.end(), [](Time lookahead) { return lookahead > 0; });
 }
 
-/// The next messages, all of one time. What they take away would come after all if one of them did not come
-/// in: a message that was due at P and is not any more limits the lookahead to P - time.
+/// The next messages, all of one time.
 void RunAhead::take_in(std::span<const Message>& inbox) {
     const Time time = inbox.front().time;
-    const auto passed = [time](Time output) { return output <= time; };
-    note_earliest_outputs();
-    if (ahead_ < time && std::any_of(earliest_outputs_.begin(), earliest_outputs_.end(), passed)) {
-        execute(time, inbox);
+    if (ahead_ < time) execute_noting(time, inbox);
+    execute_noting(time + 1, inbox);
+}
+
+/// As execute(), up to just behind every earliest output time on its way: what a port claims there and then
+/// holds for what comes in until then. An output that was due at P and is not any more, because of what came
+/// in or without it, would come after all if something else came in: that limits the lookahead to the time
+/// that was left until P. Nor need anything come in: a bus asks its boards some time after a START, and only
+/// then answers sooner than before.
+void RunAhead::execute_noting(Time until, std::span<const Message>& inbox) {
+    for (Time cut = ahead_; cut < until;) {
         note_earliest_outputs();
-    }
-    const std::size_t first = sent_.size();
-    execute(time + 1, inbox);
-    for (std::size_t p = 0; p < earliest_outputs_.size(); ++p) {
-        const auto port = static_cast<PortIndex>(p);
-        const Time earliest = earliest_outputs_[p];
-        if (node_->earliest_output(port) <= earliest) continue;
-        const bool kept = std::any_of(sent_.begin() + static_cast<std::ptrdiff_t>(first), sent_.end(),
-                                      [&](const Message& m) { return m.port == port && m.time == earliest; });
-        if (!kept) lookaheads_[p] = std::min(lookaheads_[p], std::max<Time>(0, earliest - time));
+        cut = until;
+        for (const Time earliest : earliest_outputs_)
+            if (earliest >= ahead_) cut = std::min(cut, cosim::later(earliest, 1));
+        const std::size_t first = sent_.size();
+        execute(cut, inbox);
+        for (std::size_t p = 0; p < earliest_outputs_.size(); ++p) {
+            const auto port = static_cast<PortIndex>(p);
+            const Time earliest = earliest_outputs_[p];
+            if (node_->earliest_output(port) <= earliest) continue;
+            const bool kept =
+                std::any_of(sent_.begin() + static_cast<std::ptrdiff_t>(first), sent_.end(),
+                            [&](const Message& m) { return m.port == port && m.time == earliest; });
+            if (!kept) lookaheads_[p] = std::min(lookaheads_[p], std::max<Time>(0, earliest - (cut - 1)));
+        }
+        sample_lookaheads();
     }
 }
 

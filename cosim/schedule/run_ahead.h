@@ -88,6 +88,7 @@ class RunAhead {
     void execute(Time until, std::span<const Message>& inbox);
     void run_on(Time until, std::span<const Message>& inbox);
     void take_in(std::span<const Message>& inbox);
+    void execute_noting(Time until, std::span<const Message>& inbox);
     bool answers_late() const;
     void note_advance(Time from, Time to, std::size_t messages);
     void note_earliest_outputs();

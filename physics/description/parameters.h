@@ -82,7 +82,8 @@ struct IrParameters {
     double ring, height, emitter_exponent, power_reference, power_exponent, power_floor;
     std::array<double, kIrCurvePoints> distance, level;
     double source_offset, receiver_exponent, reach, demodulator_exponent, centre_frequency, quality;
-    double threshold, delay_on, delay_off, min_burst, min_gap, level_delay, level_hold, ambient;
+    double threshold, delay_on, delay_off, min_burst, min_gap, level_delay, level_hold, gain_share, gain_hold,
+        ambient;
     double emitter_spread, receiver_spread, demodulator_spread;
     double frame_noise, receiver_noise, carrier_noise, near_noise, near_range;
     double reflection, self_coupling, chip, refresh, rail;

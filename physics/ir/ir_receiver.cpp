@@ -27,10 +27,12 @@ IrReceiver::IrReceiver(const IrParameters& p)
       min_gap_(decided_within(p.min_gap, delay_off_)),
       level_delay_(cosim::from_seconds(p.level_delay)),
       level_hold_(cosim::from_seconds(p.level_hold)),
+      gain_hold_(cosim::from_seconds(p.gain_hold)),
       lookahead_(std::min({delay_on_, delay_off_, level_delay_})),
       settled_(std::min({delay_on_ - min_burst_, delay_off_ - min_gap_, level_delay_})),
       threshold_(static_cast<float>(p.threshold)),
-      rail_(static_cast<float>(p.rail)) {
+      rail_(static_cast<float>(p.rail)),
+      gain_share_(static_cast<float>(p.gain_share)) {
     level_.fill(-1);
     shown_.fill(-1);
 }
@@ -56,11 +58,38 @@ void IrReceiver::put(Time time, std::size_t index, double value) {
 }
 
 void IrReceiver::see(Time now, const IrLight& light) {
+    control_gain(now, light.carrier);
+    if (const std::uint16_t above = above_threshold(); above != above_) demodulate(now, above);
+    measure(now, light.level);
+}
+
+std::uint16_t IrReceiver::above_threshold() const {
     std::uint16_t above = 0;
     for (std::size_t k = 0; k < kIrSensors; ++k)
-        if (light.carrier[k] >= threshold_) above = static_cast<std::uint16_t>(above | 1U << k);
-    if (above != above_) demodulate(now, above);
-    measure(now, light.level);
+        if (is_above(k)) above = static_cast<std::uint16_t>(above | 1U << k);
+    return above;
+}
+
+void IrReceiver::control_gain(Time now, const IrArray<float>& carrier) {
+    if (gain_share_ == 0.0F) {
+        carrier_ = carrier;
+        return;
+    }
+    std::uint16_t fell = 0, back = 0;
+    for (std::size_t k = 0; k < kIrSensors; ++k) {
+        if (carrier[k] == carrier_[k]) continue;
+        const auto bit = static_cast<std::uint16_t>(1U << k);
+        const bool was_strongest = carrier_[k] >= strongest_[k];
+        carrier_[k] = carrier[k];
+        if (carrier[k] >= strongest_[k]) {
+            strongest_[k] = carrier[k];
+            if (!was_strongest) back = static_cast<std::uint16_t>(back | bit);
+        } else if (was_strongest) {
+            fell = static_cast<std::uint16_t>(fell | bit);
+        }
+    }
+    if (back != 0) take_back(fading_, back);
+    if (fell != 0) fading_.push_back({now, fell});
 }
 
 void IrReceiver::demodulate(Time now, std::uint16_t above) {
@@ -102,16 +131,29 @@ void IrReceiver::decide(const Change& change, Time delay, double value) {
 }
 
 void IrReceiver::run_to(Time now) {
-    for (; !rising_.empty() && rising_.front().begun + min_burst_ <= now; rising_.pop_front())
-        decide(rising_.front(), delay_on_, 1.0);
-    for (; !falling_.empty() && falling_.front().begun + min_gap_ <= now; falling_.pop_front())
-        decide(falling_.front(), delay_off_, 0.0);
+    for (; !fading_.empty() && fading_.front().begun + gain_hold_ <= now; fading_.pop_front()) {
+        const Change over = fading_.front();
+        for (std::size_t k = 0; k < kIrSensors; ++k)
+            if ((over.mask >> k & 1U) != 0) strongest_[k] = carrier_[k];
+        settle_bursts(over.begun + gain_hold_);
+        if (const std::uint16_t above = above_threshold(); above != above_)
+            demodulate(over.begun + gain_hold_, above);
+    }
+    settle_bursts(now);
     for (; !lower_.empty() && lower_.front().begun + level_hold_ <= now; lower_.pop_front())
         for (std::size_t k = 0; k < kIrSensors; ++k) {
             if ((lower_.front().mask >> k & 1U) == 0) continue;
             shown_[k] = level_[k];
             put(lower_.front().begun + level_hold_ + level_delay_, kIrLevelOutput + k, shown_[k]);
         }
+}
+
+/// Decides which bursts and gaps were long enough.
+void IrReceiver::settle_bursts(Time now) {
+    for (; !rising_.empty() && rising_.front().begun + min_burst_ <= now; rising_.pop_front())
+        decide(rising_.front(), delay_on_, 1.0);
+    for (; !falling_.empty() && falling_.front().begun + min_gap_ <= now; falling_.pop_front())
+        decide(falling_.front(), delay_off_, 0.0);
 }
 
 void IrReceiver::release(Time until, std::vector<IrOutput>& out) {
@@ -133,6 +175,7 @@ Time IrReceiver::next_output() const {
     consider(rising_, delay_on_);
     consider(falling_, delay_off_);
     consider(lower_, level_hold_ + level_delay_);
+    consider(fading_, gain_hold_ + delay_on_);
     return next;
 }
 

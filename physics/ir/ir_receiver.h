@@ -7,7 +7,11 @@
 // rises shows ir.level_delay later; one that falls does once it has been lower for ir.level_hold, because the
 // board's peak detector keeps the highest anyway.
 //
-// Deviation: threshold without hysteresis and without gain control.
+// Gain control: a demodulator's threshold is ir.threshold or ir.gain_share of the strongest carrier of the
+// last ir.gain_hold, whichever is higher, so that a near board is heard through the light of far ones
+// (capture). The gain follows at once and comes back at once when the hold is over.
+//
+// Deviation: threshold without hysteresis.
 
 #include "cosim/core/time.h"
 #include "physics/ir/ir_medium.h"
@@ -44,6 +48,7 @@ class IrReceiver {
     template <class Archive>
     void state(Archive& archive) {
         archive(above_, rising_, falling_, lower_, level_, shown_, last_, outputs_);
+        archive(carrier_, strongest_, fading_);
     }
 
   private:
@@ -53,14 +58,22 @@ class IrReceiver {
         std::uint16_t mask = 0;
     };
     static std::uint16_t take_back(std::deque<Change>& changes, std::uint16_t mask);
+    void control_gain(cosim::Time now, const IrArray<float>& carrier);
+    std::uint16_t above_threshold() const;
+    bool is_above(std::size_t k) const {
+        return carrier_[k] >= threshold_ && carrier_[k] >= gain_share_ * strongest_[k];
+    }
     void demodulate(cosim::Time now, std::uint16_t above);
     void measure(cosim::Time now, const IrArray<float>& level);
     void put(cosim::Time time, std::size_t index, double value);
+    void settle_bursts(cosim::Time now);
     void decide(const Change& change, cosim::Time delay, double value);
 
-    cosim::Time delay_on_, delay_off_, min_burst_, min_gap_, level_delay_, level_hold_;
+    cosim::Time delay_on_, delay_off_, min_burst_, min_gap_, level_delay_, level_hold_, gain_hold_;
     cosim::Time lookahead_, settled_;
-    float threshold_, rail_;
+    float threshold_, rail_, gain_share_;
+    IrArray<float> carrier_{}, strongest_{};
+    std::deque<Change> fading_;  ///< the strongest of these is over, but still holds the gain down
     std::uint16_t above_ = 0;
     std::deque<Change> rising_, falling_, lower_;
     IrArray<int> level_, shown_;

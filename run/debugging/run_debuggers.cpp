@@ -12,22 +12,11 @@
 
 namespace puckloop::tools {
 
-namespace {
-
-/// What cannot go back, and why; empty: all of the run can.
-std::string fixed(const RunSetup& setup, const RunRequest& request) {
-    for (const PlannedNode& node : setup.nodes)
-        if (node.outside) return node.name + " is a line to the outside, which cannot go back";
-    if (request.realtime || request.paced) return "the run is paced by the wall clock, which cannot go back";
-    if (!request.live.empty()) return "--live has given away what would have to be taken back";
-    return {};
-}
-
-}  // namespace
-
 RunDebuggers::RunDebuggers(const RunSetup& setup, const RunRequest& request,
                            const volatile std::sig_atomic_t* abort_requested)
-    : origin_(request.snapshot), abort_requested_(abort_requested), no_way_back_(fixed(setup, request)) {
+    : origin_(request.snapshot),
+      abort_requested_(abort_requested),
+      no_way_back_(why_not_back(setup, request)) {
     for (const PlannedNode& node : setup.nodes)
         if (const std::string& place = node.what.care.gdb; !place.empty())
             boards_.push_back(std::make_unique<BoardDebugger>(*this, boards_.size(), node.name, place));
@@ -43,15 +32,16 @@ std::unique_ptr<cosim::Node> RunDebuggers::make_node(const std::string& text) {
 }
 
 void RunDebuggers::keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,
-                             std::optional<cosim::TraceCsvSink>& record) {
+                             std::optional<cosim::TraceCsvSink>& record, const LineWatch& lines) {
     if (!no_way_back_.empty()) return;
     options.save_next = [this](cosim::Time after) { return history_.next(after); };
-    options.save = [this, &trace, &record, to_file = options.save,
+    options.save = [this, &trace, &record, &lines, to_file = options.save,
                     at = options.save_at](cosim::RunSnapshot& snapshot) {
         if (std::find(at.begin(), at.end(), snapshot.time) != at.end()) to_file(snapshot);
         RunHistory::Place here = place();
         here.trace = trace->size();
         if (record) here.record = record->size();
+        here.lines = lines.seen();
         history_.take(snapshot, std::move(here));
     };
 }

@@ -9,9 +9,9 @@
 #include "cosim/conductor.h"
 #include "cosim/trace/trace_csv.h"
 #include "run/debugging/board_debugger.h"
-#include "run/debugging/run_history.h"
 #include "run/description/run_request.h"
 #include "run/description/run_setup.h"
+#include "run/past/run_history.h"
 
 #include <functional>
 #include <memory>
@@ -31,9 +31,9 @@ class RunDebuggers {
     /// As run/factory/node_factory.h, with debuggers at their boards.
     std::unique_ptr<cosim::Node> make_node(const std::string& json);
     /// Has the conductor keep the run's past, if it can go back at all. `trace` and `record` are what it
-    /// writes.
+    /// writes, `lines` what it looks for; all must stay.
     void keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,
-                   std::optional<cosim::TraceCsvSink>& record);
+                   std::optional<cosim::TraceCsvSink>& record, const LineWatch& lines);
     /// After EndReason::Reverted: from where the run is to begin again; null: from power-up.
     const cosim::RunSnapshot* begin_again();
     /// How much of what was written stays; nothing: the run begins where it began first.

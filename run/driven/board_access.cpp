@@ -5,6 +5,7 @@
 #include "emu/avr/device.h"
 #include "emu/image/avr_image.h"
 #include "emu/image/image.h"
+#include "emu/image/line_table.h"
 #include "emu/image/symbol_sizes.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace puckloop::tools {
@@ -51,16 +53,25 @@ std::vector<std::uint8_t> bytes_of(const std::string& hex) {
     return bytes;
 }
 
-std::map<std::string, image::Symbol> symbols_of(const std::string& file, bool avr) {
-    if (!avr) return image::load_image(file).symbols;
-    return image::load_avr_image(file, puckloop::avr::find_device("atmega1284p")->image_part()).symbols;
+/// What an image calls its places.
+struct Names {
+    std::map<std::string, image::Symbol> symbols;
+    image::LineTable lines;
+};
+
+Names names_of(const std::string& file, bool avr) {
+    if (!avr) return {image::load_image(file).symbols, image::source_lines(file)};
+    image::AvrImage image =
+        image::load_avr_image(file, puckloop::avr::find_device("atmega1284p")->image_part());
+    return {std::move(image.symbols), std::move(image.lines)};
 }
 
 }  // namespace
 
-BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : node_(node) {
+BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : node_(node), places_({}, {}) {
+    Names names = names_of(file, avr);
     const auto sizes = image::symbol_sizes(file);
-    for (const auto& [name, symbol] : symbols_of(file, avr)) {
+    for (const auto& [name, symbol] : names.symbols) {
         if (symbol.space != image::Space::Data) continue;
         const auto size = sizes.find(name);
         const Variable variable{symbol.address, size == sizes.end() ? 0 : size->second};
@@ -68,6 +79,42 @@ BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : 
         // A C variable carries an underscore, which nobody types.
         if (name.starts_with("_")) variables_.try_emplace(name.substr(1), variable);
     }
+    places_ = debug::Places(names.symbols, std::move(names.lines));
+}
+
+/// From the beginning of the function on, where that is near: instructions have several lengths.
+ordered_json BoardAccess::where() const {
+    constexpr std::uint32_t kNear = 400;  // program addresses
+    constexpr std::size_t kBefore = 6, kAfter = 10;
+    const debug::DebugChip& chip = node_.chip();
+    const std::uint32_t pc = chip.pc();
+    const std::uint32_t* function = places_.function_of(pc);
+    ordered_json instructions = ordered_json::array();
+    std::size_t after = 0;
+    for (std::uint32_t at = function != nullptr && pc - *function <= kNear ? *function : pc;
+         after < kAfter && chip.is_code(at);) {
+        if (at > pc && after == 0) {  // it was no beginning of an instruction
+            at = pc;
+            instructions.clear();
+        }
+        const debug::Instruction one = chip.instruction(at);
+        instructions.push_back({{"pc", at}, {"text", one.text}, {"place", places_.symbol_at(at)}});
+        after += at >= pc ? 1 : 0;
+        if (after == 0 && instructions.size() > kBefore) instructions.erase(0);
+        at += one.size;
+    }
+    ordered_json registers = ordered_json::array();
+    std::vector<std::uint64_t> values(chip.registers().size());
+    chip.read_registers(values);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        registers.push_back(
+            {{"name", chip.registers()[i].name}, {"bits", chip.registers()[i].bits}, {"value", values[i]}});
+    return {{"pc", pc},
+            {"place", places_.place(pc)},
+            {"line", places_.lines().at(pc)},
+            {"asleep", chip.asleep()},
+            {"instructions", std::move(instructions)},
+            {"registers", std::move(registers)}};
 }
 
 BoardAccess::Place BoardAccess::variable(const std::string& name) const {

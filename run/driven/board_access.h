@@ -2,6 +2,7 @@
 // What the client of a driven run reads and writes of a board: registers by their data-sheet names, variables
 // by the image's symbols, memory by address of data space.
 
+#include "debug/places.h"
 #include "run/driven/driven_node.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -23,6 +24,9 @@ class BoardAccess {
     nlohmann::ordered_json read(const nlohmann::json& request) const;
     /// The same with "value", or "data" in hexadecimal.
     void write(const nlohmann::json& request);
+    /// Where its program is: "pc", "place" ("main+0x12") and "line" ("main.c:43") where the image has them,
+    /// "asleep", "instructions" around it, "registers" of the core.
+    nlohmann::ordered_json where() const;
     DrivenNode& node() { return node_; }
 
   private:
@@ -41,6 +45,7 @@ class BoardAccess {
     };
     DrivenNode& node_;
     std::map<std::string, Variable> variables_;
+    debug::Places places_;
 };
 
 }  // namespace puckloop::tools

@@ -3,16 +3,20 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "base/version/version.h"
+#include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
 #include "run/control/control_place.h"
+#include "run/driven/possible_faults.h"
 #include "run/factory/node_factory.h"
 #include "run/snapshots/origin.h"
+#include "scenarios/reader/events/event_tables.h"
 #include "scenarios/reader/quantity.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -46,6 +50,19 @@ Time time_of(const json& request, const char* key) {
     return cosim::from_seconds(seconds);
 }
 
+constexpr Time kWorldStep = cosim::kMillisecond;
+
+/// The step in which the world takes in what it is given while the run stands at `time`, whose step it has
+/// done.
+Time world_step(Time time) {
+    return (time / kWorldStep + 1) * kWorldStep;
+}
+
+/// The world, which stands at `time`, has taken in a command that it was given at `given`.
+bool heard_by_world(Time given, Time time) {
+    return world_step(given) <= time;
+}
+
 }  // namespace
 
 void let_client_drive(RunSetup& setup, const RunRequest& request) {
@@ -57,7 +74,7 @@ void let_client_drive(RunSetup& setup, const RunRequest& request) {
             throw InputError("", option,
                              "does not go with --control, whose client decides when the run goes on",
                              "one of them");
-    setup.control = new_control_path();
+    if (setup.control.empty()) setup.control = new_control_path();
     for (PlannedNode& node : setup.nodes) {
         if (auto* world = std::get_if<WorldSpec>(&node.what.kind)) {
             world->control = setup.control;
@@ -73,14 +90,16 @@ void let_client_drive(RunSetup& setup, const RunRequest& request) {
     }
 }
 
-DrivenRun::DrivenRun(const RunSetup& setup, const RunRequest& request,
+DrivenRun::DrivenRun(const RunSetup& setup, const RunRequest& request, Planner planner,
                      const volatile std::sig_atomic_t* interrupted)
     : setup_(setup),
       request_(request),
+      planner_(std::move(planner)),
       interrupted_(interrupted),
       line_(client_socket_beside(setup.control)),
       world_(setup.control),
       origin_(origin_of(setup, request)),
+      no_way_back_(why_not_back(setup, request)),
       next_(setup.from_time) {}
 
 std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
@@ -94,24 +113,43 @@ std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
     return node;
 }
 
-void DrivenRun::drive(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace) {
-    trace_ = &trace;
-    options.save_next = [this](Time after) {
-        if (next_ && (*next_ > after || !begun_)) return *next_;
-        return kNever;
+void DrivenRun::drive(cosim::RunOptions& options, Written written) {
+    written_.emplace(written);
+    history_.begin(request_.snapshot, {});
+    if (no_way_back_.empty()) remember_at_ = history_.next(setup_.from_time);
+    options.stand_next = [this](Time after) {
+        const Time asked = next_ && (*next_ > after || !begun_) ? *next_ : kNever;
+        return std::min(asked, remember_at_ > after ? remember_at_ : kNever);
     };
-    options.save = [this, to_file = options.save, at = options.save_at](cosim::RunSnapshot& snapshot) {
-        if (std::find(at.begin(), at.end(), snapshot.time) != at.end()) to_file(snapshot);
-        if (!next_ || snapshot.time < *next_) return;
+    options.stand = [this](Time time, const TakeSnapshot& take) {
+        now_ = time;
+        remember(take, time >= remember_at_);
+        if (!next_ || time < *next_) return;
         begun_ = true;
-        stand(snapshot);
+        stand(take);
     };
 }
 
-void DrivenRun::stand(cosim::RunSnapshot& snapshot) {
-    now_ = snapshot.time;
+void DrivenRun::remember(const TakeSnapshot& take, bool due) {
+    if (!due) return;
+    remember_at_ = history_.next(now_);
+    // A change that waits for its board's next instruction is in no snapshot: later, then.
+    for (const auto& [name, access] : boards_)
+        if (access->node().changes_wait()) return;
+    RunHistory::Place place;
+    place.trace = written_->trace->size();
+    if (written_->record) place.record = written_->record->size();
+    place.lines = written_->lines.seen();
+    cosim::RunSnapshot snapshot = take();
+    history_.take(snapshot, std::move(place));
+    remember_at_ = history_.next(now_);
+}
+
+void DrivenRun::stand(const TakeSnapshot& take) {
     next_.reset();
-    if (step_) {
+    if (return_) {
+        if (!returned()) return;
+    } else if (step_) {
         const bool holds = met();
         if (!holds && now_ < step_->until) {  // on to where its condition is looked at again
             next_ = std::min(step_->until, now_ + step_->every);
@@ -121,6 +159,11 @@ void DrivenRun::stand(cosim::RunSnapshot& snapshot) {
         done["met"] = step_->condition.is_null() || holds;
         if (frames_.seen() && !frames_.found().is_null()) done["frame"] = frames_.found();
         done["acts"] = world_.take_replies();
+        for (const ordered_json& one : done["acts"]) {
+            while (answered_ < deeds_.size() && !deeds_[answered_].write.is_null())
+                ++answered_;
+            if (answered_ < deeds_.size()) deeds_[answered_++].refused = one.contains("refused");
+        }
         frames_.wait_for_nothing();
         step_.reset();
         line_.send(done);
@@ -128,7 +171,27 @@ void DrivenRun::stand(cosim::RunSnapshot& snapshot) {
         if (!line_.await_client(interrupted_)) return;
         line_.send(greeting());
     }
-    serve(snapshot);
+    serve(take);
+}
+
+bool DrivenRun::returned() {
+    for (const Deed& deed : deeds_) {
+        if (deed.time != now_) continue;
+        if (!deed.write.is_null())
+            board(deed.write).write(deed.write);
+        else if (!heard_by_world(deed.time, return_->to))
+            world_.act(deed.command);
+    }
+    if (now_ < return_->to) {
+        next_ = return_->to;
+        for (const Deed& deed : deeds_)
+            if (deed.time > now_) next_ = std::min(*next_, deed.time);
+        return false;
+    }
+    line_.send(reply(return_->id));
+    return_.reset();
+    step_.reset();
+    return true;
 }
 
 bool DrivenRun::met() {
@@ -151,7 +214,7 @@ bool DrivenRun::compare(const json& condition) {
     throw InputError("", "is", fmt::format("'{}' compares nothing", is), "==, !=, <, >, <= or >=");
 }
 
-void DrivenRun::serve(cosim::RunSnapshot& snapshot) {
+void DrivenRun::serve(const TakeSnapshot& take) {
     for (bool go_on = false; !go_on;) {
         const std::optional<std::string> text = line_.next(interrupted_);
         if (!text) {
@@ -162,7 +225,7 @@ void DrivenRun::serve(cosim::RunSnapshot& snapshot) {
         const json id = request.is_object() ? request.value("id", json()) : json();
         try {
             if (!request.is_object()) throw InputError("", "request", "is no JSON object", "one on one line");
-            const ordered_json answered = answer(request, snapshot, go_on);
+            const ordered_json answered = answer(request, take, go_on);
             if (!answered.is_null()) line_.send(answered);
         } catch (const json::exception& error) {
             line_.send({{"id", id},
@@ -174,7 +237,7 @@ void DrivenRun::serve(cosim::RunSnapshot& snapshot) {
     }
 }
 
-ordered_json DrivenRun::answer(const json& request, cosim::RunSnapshot& snapshot, bool& go_on) {
+ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bool& go_on) {
     const std::string op = request.at("op");
     ordered_json answered = reply(request.value("id", json()));
     if (op == "step") {
@@ -190,11 +253,13 @@ ordered_json DrivenRun::answer(const json& request, cosim::RunSnapshot& snapshot
     }
     if (op == "read") {
         answered.update(board(request).read(request));
+    } else if (op == "where") {
+        answered.update(board(request).where());
+    } else if (op == "faults") {
+        answered.update(possible_faults(setup_.scenario));
     } else if (op == "write") {
-        BoardAccess& access = board(request);
-        access.write(request);
-        for (cosim::NodeSnapshot& node : snapshot.nodes)
-            if (node.name == access.node().name()) node.state = access.node().saved();
+        board(request).write(request);
+        deeds_.push_back({now_, request});
     } else if (op == "capture") {
         frames_.capture(FrameFilter(request.value("frame", json::object()), setup_.links));
     } else if (op == "frames") {
@@ -202,12 +267,18 @@ ordered_json DrivenRun::answer(const json& request, cosim::RunSnapshot& snapshot
         answered["frames"] = frames_.take(lost);
         answered["lost"] = lost;
     } else if (op == "act") {
-        world_.act(request.at("command"));
+        const std::string command = request.at("command");
+        world_.act(command);
+        deeds_.push_back({now_, nullptr, command});
     } else if (op == "save") {
-        save(request, snapshot);
+        save(request, take);
+    } else if (op == "back") {
+        go_back(request);
+    } else if (op == "fault") {
+        add_fault(request, take);
     } else if (op != "info") {
-        constexpr std::array<std::string_view, 9> kOps{"info",   "step", "read", "write", "capture",
-                                                       "frames", "act",  "save", "end"};
+        constexpr std::array<std::string_view, 11> kOps{"info", "step", "read", "write", "capture", "frames",
+                                                        "act",  "save", "back", "fault", "end"};
         throw InputError(
             "", "op", fmt::format("there is no '{}'", op),
             fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
@@ -241,16 +312,103 @@ void DrivenRun::begin_step(const json& request) {
     step_ = std::move(step);
 }
 
-void DrivenRun::save(const json& request, cosim::RunSnapshot& snapshot) {
+void DrivenRun::save(const json& request, const TakeSnapshot& take) {
     for (const auto& [name, access] : boards_)
         if (access->node().changes_wait())
             throw InputError("", "save",
                              fmt::format("a register of {} is written before its next instruction", name),
                              "a step before it");
+    cosim::RunSnapshot snapshot = take();
     snapshot.build = cosim::build_id();
     snapshot.origin = origin_;
-    snapshot.trace = (*trace_)->written();
+    snapshot.trace = written_->trace->written();
     cosim::write_snapshot(request.at("file").get<std::string>(), snapshot);
+}
+
+void DrivenRun::go_back(const json& request) {
+    if (!no_way_back_.empty()) throw InputError("", "back", no_way_back_, "a run that can go back");
+    if (!request.contains("to"))
+        throw InputError("", "back", "needs 'to'", R"({"op": "back", "to": "1.5 s"})");
+    const Time to = time_of(request, "to");
+    if (to >= now_ || to < setup_.from_time)
+        throw InputError(
+            "", "to",
+            fmt::format("{:.9f} s is not between the run's beginning, {:.9f} s, and now, {:.9f} s",
+                        cosim::to_seconds(to), cosim::to_seconds(setup_.from_time), cosim::to_seconds(now_)),
+            "an earlier time");
+    RunSetup next = planned(request_);
+    std::erase_if(deeds_, [to](const Deed& deed) { return deed.time >= to; });
+    add_events(next, to);
+    setup_ = std::move(next);
+    return_ = Return{history_.at_or_before(to), to, request.value("id", json())};
+    throw cosim::Reverted{};
+}
+
+void DrivenRun::add_fault(const json& request, const TakeSnapshot& take) {
+    if (!no_way_back_.empty()) throw InputError("", "fault", no_way_back_, "--fault when the run is started");
+    for (const auto& [name, access] : boards_)
+        if (access->node().changes_wait())
+            throw InputError("", "fault",
+                             fmt::format("a register of {} is written before its next instruction", name),
+                             "a step before it");
+    RunRequest with = request_;
+    const json& faults = request.at("fault");
+    for (const json& fault : faults.is_array() ? faults : json::array({faults}))
+        with.faults.push_back(fault.get<std::string>());
+    RunSetup next = planned(with);
+    check_origin(origin_, next, now_, "");
+    cosim::check_link_faults(take(), next.links, next.scenario.faults, next.scenario.seed);
+    remember(take, true);
+    add_events(next, now_);
+    setup_ = std::move(next);
+    request_ = std::move(with);
+    return_ = Return{history_.at_or_before(now_), now_, request.value("id", json())};
+    throw cosim::Reverted{};
+}
+
+RunSetup DrivenRun::planned(const RunRequest& request) const {
+    RunSetup next = planner_(request);
+    next.control = setup_.control;
+    let_client_drive(next, request);
+    return next;
+}
+
+/// What the world has heard by `time` is an event of it from the beginning: it is executed from there.
+void DrivenRun::add_events(RunSetup& setup, Time time) const {
+    for (PlannedNode& node : setup.nodes) {
+        auto* world = std::get_if<WorldSpec>(&node.what.kind);
+        if (world == nullptr) continue;
+        for (const Deed& deed : deeds_) {
+            if (!deed.write.is_null() || deed.refused || !heard_by_world(deed.time, time)) continue;
+            physics::Event event;
+            event.name = "command";
+            event.at = world_step(deed.time) + kWorldStep;
+            event.action = scenarios::parse_command(deed.command);
+            world->events.events.push_back(std::move(event));
+        }
+    }
+}
+
+const cosim::RunSnapshot* DrivenRun::begin_again() {
+    boards_.clear();
+    world_.forget();
+    std::error_code ignored;
+    std::filesystem::remove(setup_.control, ignored);  // of the world that was: the next one listens there
+    answered_ = deeds_.size();
+    for (std::size_t i = deeds_.size(); i > 0; --i)  // what is given to the world again is answered again
+        if (deeds_[i - 1].write.is_null() && !heard_by_world(deeds_[i - 1].time, return_->to))
+            answered_ = i - 1;
+    const Time begin = history_.time(return_->instant);
+    kept_.reset();
+    if (return_->instant > 0) kept_ = history_.place(return_->instant);
+    from_ = history_.snapshot(return_->instant);
+    history_.forget_after(return_->instant);
+    remember_at_ = history_.next(begin);
+    frames_.go_back(return_->to);
+    begun_ = false;
+    next_ = begin;
+    step_ = Step{return_->id, kNever, 0, json()};  // should the run end on its way
+    return from_.get();
 }
 
 /// By the first board, at its next advance.

@@ -97,7 +97,16 @@ void FrameWatch::wait_for(FrameFilter filter, std::string text) {
     waits_ = true;
 }
 
+void FrameWatch::go_back(cosim::Time time) {
+    std::erase_if(captured_, [time](const ordered_json& frame) {
+        return frame.at("time_ps").get<cosim::Time>() >= time;
+    });
+    known_ = time;
+    waits_ = false;
+}
+
 void FrameWatch::record(const cosim::TraceRecord& record) {
+    if (record.time < known_) return;
     const std::string& link = links_[record.link].name;
     const std::string& from = sender_of(record, links_).node;
     const bool wanted = waits_ && !seen_ && wanted_.may_match(link, from);

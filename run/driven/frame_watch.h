@@ -44,6 +44,9 @@ class FrameWatch final : public cosim::TraceSink {
     /// The frame that was waited for; of a text null.
     const nlohmann::ordered_json& found() const { return found_; }
 
+    /// The run goes back to `time`: what was captured from there on comes again, and nothing before.
+    void go_back(cosim::Time time);
+
     void begin(const std::vector<cosim::LinkSpec>& links) override { links_ = links; }
     void record(const cosim::TraceRecord& record) override;
 
@@ -52,6 +55,7 @@ class FrameWatch final : public cosim::TraceSink {
     std::vector<FrameFilter> captured_by_;
     std::vector<nlohmann::ordered_json> captured_;
     std::size_t lost_ = 0;
+    cosim::Time known_ = 0;  ///< what comes before is known already
     bool waits_ = false, seen_ = false;
     FrameFilter wanted_;
     ByteMatch text_;

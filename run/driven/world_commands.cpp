@@ -34,8 +34,13 @@ WorldCommands::WorldCommands(std::string socket) : parts_(std::make_unique<Parts
 }
 
 WorldCommands::~WorldCommands() {
+    forget();
+}
+
+void WorldCommands::forget() {
     for (const Parts::Asked& one : parts_->asked)
         ::close(one.descriptor);
+    parts_->asked.clear();
 }
 
 void WorldCommands::act(const std::string& command) {

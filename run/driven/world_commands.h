@@ -19,6 +19,8 @@ class WorldCommands {
     void act(const std::string& command);
     /// Replies to commands that were done or refused since the last call, in their order.
     nlohmann::ordered_json take_replies();
+    /// Nothing is awaited any more: the world begins again.
+    void forget();
 
   private:
     struct Parts;

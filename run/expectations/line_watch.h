@@ -14,6 +14,14 @@ namespace puckloop::tools {
 
 class LineWatch final : public cosim::TraceSink {
   public:
+    /// What was seen so far for one table.
+    struct Watch {
+        std::size_t index = 0;
+        std::optional<std::size_t> link{};
+        ByteMatch matches[2]{};  ///< of each direction
+        std::optional<double> seen{};
+    };
+
     /// Of all kinds; those of serial lines are watched. `expected` outlives this.
     explicit LineWatch(const std::vector<scenarios::Expectation>& expected);
 
@@ -22,17 +30,14 @@ class LineWatch final : public cosim::TraceSink {
     /// index in `expected`.
     std::optional<double> seen_at(std::size_t index) const;
 
+    /// For a run that goes back: what was seen until an instant, and that this is all again.
+    const std::vector<Watch>& seen() const { return watches_; }
+    void go_back(std::vector<Watch> seen) { watches_ = std::move(seen); }
+
     void begin(const std::vector<cosim::LinkSpec>& links) override;
     void record(const cosim::TraceRecord& record) override;
 
   private:
-    struct Watch {
-        std::size_t index = 0;
-        std::optional<std::size_t> link{};
-        ByteMatch matches[2]{};  ///< of each direction
-        std::optional<double> seen{};
-    };
-
     const std::vector<scenarios::Expectation>& expected_;
     std::vector<cosim::LinkSpec> links_;
     std::vector<Watch> watches_;

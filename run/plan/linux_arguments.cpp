@@ -16,7 +16,8 @@ constexpr auto kRunOptions = std::to_array<std::string_view>(
      "--from-state",  "--no-cache", "--no-translate", "--fault",      "--trace-format",
      "--record",      "--live",     "--gdb",          "--save-at",    "--save",
      "--from",        "--stats",    "--set",          "--floor",      "--floor-scale",
-     "--linux-start", "--control",  "--mission",      "--junit",      "--tap"});
+     "--linux-start", "--control",  "--mission",      "--junit",      "--tap",
+     "--view",        "--view-port"});
 
 bool is_run_option(std::string_view word) {
     return std::any_of(kRunOptions.begin(), kRunOptions.end(), [&](std::string_view option) {

@@ -1,6 +1,6 @@
 // A run's past in memory: each snapshot comes back as it was taken, however many there were since.
 
-#include "run/debugging/run_history.h"
+#include "run/past/run_history.h"
 
 #include <catch2/catch.hpp>
 

@@ -88,6 +88,7 @@ const std::vector<std::string> kFolders = {
     "run/snapshots",
     "run/report",
     "run/expectations",
+    "run/past",
     "run/debugging",
     "run/driven",
     "run",

@@ -82,9 +82,11 @@ class Asynchronous(InFolder):
                 step = await run.step(to="800 ms")
                 self.assertIn("done", step.acts[0])
                 self.assertTrue(all(frame.fault == "drop" for frame in await run.frames() if frame.time_s > 0.51))
-                with self.assertRaisesRegex(puckloop.StartError, "did you mean"):
+                with self.assertRaisesRegex(puckloop.RequestError, "did you mean"):
                     await run.fault("dropp link=robot0.uart begin=900ms")
                 self.assertEqual((await run.step(to="801 ms")).time_s, 0.801)  # as before
+                await run.back("450 ms")
+                self.assertEqual(run.time_ps, 450_000_000_000)
 
         asyncio.run(main())
 
@@ -167,8 +169,9 @@ class Unreachable(InFolder):
             self.assertIsNone(process.poll())
         with puckloop.attach(out) as run:
             self.assertEqual(run.step(to="100 ms").time_s, 0.1)
-            with self.assertRaisesRegex(puckloop.RequestError, "that this program began"):
-                run.fault("drop link=robot0.uart at=1s")
+            run.fault("drop link=robot0.uart at=150ms")
+            self.assertEqual(run.time_s, 0.1)
+            run.step(to="200 ms")
             self.assertTrue(run.end().success)
         self.assertEqual(process.wait(60), 0)
 

@@ -118,7 +118,7 @@ class Client(InFolder):
             self.assertEqual(run.time_ps, 400_000_000_000)
             run.capture(link="robot0.uart", sender="robot0.pic")
             run.step(to="450 ms")
-            with self.assertRaisesRegex(puckloop.StartError, "there is no link 'robot0.uatr'"):
+            with self.assertRaisesRegex(puckloop.RequestError, "there is no link 'robot0.uatr'"):
                 run.fault("drop link=robot0.uatr from=robot0.pic begin=500ms")
             run.fault("drop link=robot0.uart from=robot0.pic begin=500ms")
             run.step(to="800 ms")
@@ -128,6 +128,70 @@ class Client(InFolder):
             self.assertTrue(late)
             self.assertTrue(all(frame.fault == "drop" for frame in late), late[:1])
             self.assertTrue(run.end().report["faults"])
+
+    def test_a_run_that_went_back_is_the_run_that_never_did(self):
+        outcomes = {}
+        for in_process in (True, False):
+            for goes_back in (False, True):
+                out = self.folder / f"{in_process}{goes_back}"
+                with puckloop.start(scenario("1 s"), out=out, in_process=in_process) as run:
+                    board = run.board("robot0.pic")
+                    run.step(to="123.4 ms")
+                    run.act("move carton to 20 cm, 5 cm")  # done in a later step
+                    board.set_register("TRISA", 0x1234)
+                    run.capture(link="robot0.uart", sender="robot0.pic")
+                    if goes_back:
+                        run.step(to="150 ms")
+                        run.back("123.4 ms")  # where both were done: they are taken back
+                        run.act("move carton to 20 cm, 5 cm")
+                        board.set_register("TRISA", 0x1234)
+                        run.step(to="700 ms")
+                        run.act("move carton to 0 cm, 20 cm")
+                        board.set_register("TRISA", 0)
+                        run.step(to="850 ms")
+                        run.back("701 ms")  # the world had heard of it, and not done it
+                        run.back("650.123 ms")
+                        self.assertEqual(run.time_ps, 650_123_000_000)
+                        run.back("600 ms")
+                        run.back("130 ms")
+                    run.step(to="900 ms")
+                    register = board.register("TRISA").value
+                    frames = run.frames()
+                    with self.assertRaisesRegex(puckloop.RequestError, "an earlier time"):
+                        run.back("900 ms")
+                    run.end()
+                files = {name: (out / name).read_bytes() for name in (
+                    "trace.csv", "trajectory.csv", "sensors.csv", "objects.csv", "events.toml", "robot0.linux.log")}
+                outcomes[in_process, goes_back] = (register, [frame.time_ps for frame in frames], files)
+        first = outcomes[True, False]
+        self.assertTrue(first[1])
+        for outcome in outcomes.values():
+            self.assertEqual(outcome[:2], first[:2])
+            for name, content in outcome[2].items():
+                self.assertEqual(content, first[2][name], name)
+
+    def test_a_fault_found_out_late_is_the_fault_of_the_beginning(self):
+        drop = "drop link=robot0.uart from=robot0.pic begin=500ms"
+        traces = []
+        for late in (False, True):
+            with puckloop.start(scenario("1 s"), out=self.folder / f"{late}", faults=() if late else (drop,)) as run:
+                run.step(to="400 ms")
+                run.act("move carton to 20 cm, 5 cm")
+                if late:
+                    run.step(to="480 ms")
+                    run.fault(drop)
+                    self.assertEqual(run.faults, [drop])
+                    with self.assertRaisesRegex(puckloop.RequestError, "begins at 0.1 s"):
+                        run.fault("sag node=robot0.pic volts=1.5V begin=100ms for=10ms")
+                    run.step(to="700 ms")
+                    run.back("300 ms")  # the fault stays, the command goes
+                    run.step(to="400 ms")
+                    run.act("move carton to 20 cm, 5 cm")
+                run.step(to="900 ms")
+                report = run.end().report
+                self.assertGreater(report["faults"][0]["fired"], 0)
+                traces.append(report["trace_sha256"])
+        self.assertEqual(traces[0], traces[1])
 
     def test_text_is_expected_in_simulated_time(self):
         with self.begun() as run:

@@ -192,6 +192,8 @@ class Runs(Served):
         self.assertTrue((self.folder / "a.snapshot").is_file())
         self.failed(client.tool("inject_fault", run=run, fault="dropp link=robot0.uart begin=1s"), "did you mean")
         self.assertEqual(self.done(client.tool("step", run=run, to="500 ms"))["time_s"], 0.5)  # nothing was lost
+        self.assertEqual(self.done(client.tool("go_back", run=run, to="450 ms"))["time_s"], 0.45)
+        self.failed(client.tool("go_back", run=run, to="2 s"), "an earlier time")
         drop = "drop link=robot0.uart from=robot0.pic begin=600ms"
         self.assertEqual(self.done(client.tool("inject_fault", run=run, fault=drop))["faults"], [drop])
         other = self.done(client.tool("start_from_snapshot", file="a.snapshot", faults=[drop]))

@@ -128,6 +128,115 @@ class Live(unittest.TestCase):
         self.assertEqual(self.run.wait(60), 0)
         self.assertEqual(self.report()["ended_why"].split(":")[-1].strip(), "its client ended the run")
 
+    def test_a_run_goes_back_takes_a_fault_and_is_looked_into(self):
+        plain = self.folder / "plain"
+        drop = "drop link=robot0.uart from=robot0.pic begin=900ms count=1"
+        self.assertEqual(puckloop("run", SCENARIO, "--in-process", "--duration", 2, "--fault", drop, "--out",
+                                  plain).returncode, 0)
+        address = self.start(2)
+        with urllib.request.urlopen(address + "possible", timeout=60) as answer:
+            possible = json.loads(answer.read())
+        self.assertIn("robot0.pic", possible["boards"])
+        self.assertIn("drop", [kind["name"] for kind in possible["kinds"] if kind["on"] == "uart"])
+        self.assertIn({"name": "robot0.uart", "on": "uart", "key": "link", "ends": ["robot0.linux", "robot0.pic"]},
+                      possible["places"])
+        self.ask(address, {"page": "a", "do": "look", "board": "robot0.pic", "items": [
+            {"register": "TMR1"}, {"register": "NONE"}, {"memory": 0x850, "bytes": 4}]})
+        self.ask(address, {"page": "a", "do": "until", "condition": {
+            "node": "robot0.pic", "register": "T1CON", "is": ">=", "value": 0x8000}, "ms": 500})
+        state = self.wait(address, lambda s: s["acts"])
+        self.assertIn("it holds", state["acts"][0]["answer"])
+        state = self.wait(address, lambda s: s["look"] and s["look"]["time_s"] == s["time_s"])
+        look = state["look"]
+        self.assertEqual([value["ok"] for value in look["values"]], [True, False, True])
+        self.assertEqual(len(look["values"][2]["data"]), 8)
+        self.assertTrue(look["where"]["instructions"])
+        self.ask(address, {"page": "a", "do": "step", "ms": 800})
+        self.ask(address, {"page": "a", "do": "act", "command": "move can to 10 cm, 5 cm"})
+        self.ask(address, {"page": "a", "do": "step", "ms": 200})
+        self.ask(address, {"page": "a", "do": "back", "to_s": 0.6})
+        self.ask(address, {"page": "a", "do": "fault", "fault": "dropp link=robot0.uart"})
+        self.ask(address, {"page": "a", "do": "fault", "fault": drop})
+        state = self.wait(address, lambda s: s["epoch"] == 2)
+        self.assertEqual(state["time_s"], 0.6)
+        refused = [act for act in state["acts"] if act["refused"]]
+        self.assertEqual(len(refused), 1)
+        self.assertIn("did you mean", refused[0]["answer"])
+        for request in ({"do": "back"}, {"do": "back", "to_s": "x"}, {"do": "fault"}, {"do": "until"},
+                        {"do": "until", "condition": {}, "ms": 1e9}, {"do": "look", "items": 3},
+                        {"do": "look", "items": [1]}, {"do": "look", "items": [{}] * 41}):
+            self.assertEqual(self.ask(address, {"page": "a", **request})[0], 409, request)
+        self.ask(address, {"page": "a", "do": "play", "speed": 0})
+        self.wait(address, lambda s: s["over"])
+        self.assertEqual(self.run.wait(60), 0)
+        self.assertEqual(self.report()["trace_sha256"], self.report(plain)["trace_sha256"])
+
+    def test_run_view_begins_run_and_page_at_once(self):
+        self.run = subprocess.Popen([PROGRAM, "run", SCENARIO, "--view", "--duration", "2", "--out", self.out],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(self.end, self.run)
+        address = self.run.stdout.readline().strip()
+        self.assertEqual(self.ask(address, {"page": "a", "do": "play", "speed": 0})[0], 200)
+        self.wait(address, lambda s: s["over"])
+        self.assertEqual(len(self.state(address)["acts"]), 0)  # the page stays
+        self.run.send_signal(signal.SIGINT)
+        said, _ = self.run.communicate(timeout=60)
+        self.assertEqual(self.run.returncode, 0, said)
+        self.assertTrue(self.report()["success"])
+        # Ctrl-C in the middle ends the run; what cannot run has one message; a run's failure is the status.
+        self.run = subprocess.Popen([PROGRAM, "run", SCENARIO, "--view", "--out", self.out], text=True,
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(self.end, self.run)
+        self.run.stdout.readline()
+        self.run.send_signal(signal.SIGINT)
+        self.run.communicate(timeout=60)
+        self.assertEqual(self.run.returncode, 0)
+        wrong = puckloop("run", "nowhere.toml", "--view")
+        self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
+        wrong = puckloop("run", SCENARIO, "--view", "--realtime", "--out", self.out)
+        self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
+        wrong = puckloop("run", SCENARIO, "--view-port", 5000, "--out", self.out)
+        self.assertEqual(wrong.returncode, 2)
+
+    def test_the_page_goes_back_looks_and_injects(self):
+        if not find_chromium():
+            self.skipTest("no chromium is installed")
+        address = self.start(30)
+        browser = Browser()
+        self.addCleanup(browser.close)
+        browser.open(address)
+        browser.wait("document.body && document.body.dataset.ready")
+        browser.value("""(() => { const app = window.puckloopView; app.board.chooser.value = 'robot0.pic'; app.board.look();
+            app.board.add('TMR1'); app.board.add('U2STA.TRMT'); app.board.add('?'); app.drive({ do: 'step', ms: 6000 }); })()""")
+        browser.wait("Number(document.body.dataset.simulated) === 6")
+        browser.wait("document.querySelectorAll('#watches tr').length > 10")
+        self.assertRegex(browser.value("document.querySelector('#watches tr').textContent"), "^TMR10x[0-9a-f]{4} ")
+        self.assertEqual(browser.value("document.querySelectorAll('#code .here').length"), 1)
+        browser.wait("Number(document.body.dataset.events) > 20")
+        browser.value("document.getElementById('back-5').click()")
+        browser.wait("document.body.dataset.epoch === '1' && Number(document.body.dataset.simulated) === 1")
+        browser.wait("window.puckloopView.run.duration <= 1.001")
+        for text, colour in (("TMR1 < 0x8000", False), ("nonsense <", True)):
+            browser.value(f"""(() => {{ const field = document.getElementById('until'); field.value = {json.dumps(text)};
+                window.puckloopView.key({{ target: field, key: 'Enter' }}); }})()""")
+            self.assertEqual(browser.value("document.getElementById('until').classList.contains('failed')"), colour)
+        browser.wait("document.getElementById('detail').textContent.includes('it holds')")
+        browser.value("document.getElementById('fault-open').click()")
+        browser.value("""(() => { const input = document.querySelector('#fault-fields [data-key=from]');
+            input.value = 'robot0.pic'; input.dispatchEvent(new Event('input')); })()""")
+        self.assertRegex(browser.value("document.getElementById('fault-text').value"),
+                         '^drop link=robot0.uart from=robot0.pic begin="1.00[0-9] s"$')
+        browser.value("document.getElementById('fault-do').click()")
+        browser.wait("document.body.dataset.epoch === '2'")
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 1000 })")
+        browser.wait("window.puckloopView.run.events.flags && "
+                     "[...window.puckloopView.run.events.flags.slice(0, window.puckloopView.run.events.count)].some((f) => f & 1)")
+        browser.value("document.getElementById('end-run').click()")
+        browser.wait("document.body.dataset.over === 'true'")
+        self.run.wait(60)
+        self.assertEqual(browser.errors, [])
+        self.assertGreater(self.report()["faults"][0]["fired"], 0)
+
     def test_the_page_plays_pauses_steps_and_acts(self):
         if not find_chromium():
             self.skipTest("no chromium is installed")

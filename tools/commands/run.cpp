@@ -20,6 +20,7 @@
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
 #include "tools/guide/scenario_name.h"
+#include "tools/viewer/viewed_run.h"
 #include "traces/export.h"
 
 #include <fmt/format.h>
@@ -47,6 +48,8 @@ struct RunOptions {
     bool json = false;
     bool list_parameters = false;
     bool control = false;
+    bool view = false;
+    int view_port = 0;
 };
 
 /// Exit status: 0 success, 1 the run failed; signals (Ctrl-C) count as a shell would count them.
@@ -156,6 +159,18 @@ int run_scenario_file(RunOptions& options) {
     if (status != 0) fmt::print(stderr, "puckloop: {}\n", plain_lines(outcome.text, kLongestMessage));
     if (failed) std::rethrow_exception(failed);
     return status;
+}
+
+/// The same with a page that drives it.
+int view_scenario_file(RunOptions& options) {
+    options.control = true;
+    const auto results = [&] {
+        RunRequest request = options.request;
+        request.scenario = scenario_named(request.scenario);
+        if (!request.from.empty()) request = going_on(request);
+        return set_up(request).out;
+    };
+    return run_and_view([&] { return run_scenario_file(options); }, results, options.view_port);
 }
 
 }  // namespace
@@ -287,6 +302,14 @@ void declare_run(Command& app, int& status) {
     command->add_flag("--control", options->control,
                       "a client drives the run: it waits at its beginning until one comes to the socket that "
                       "control.json in the results names (docs/control_protocol.md)");
+    command->add_flag("--view", options->view,
+                      "open a page in the browser that shows the run and drives it: play, "
+                      "step, back, faults, registers; it "
+                      "stands still until the page lets it go on (docs/view.md)");
+    command
+        ->add_option("--view-port", options->view_port, "port of --view on 127.0.0.1 (default: a free one)")
+        ->check(whole_number_between(0, 65535))
+        ->type_name("N");
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
                       "model, I2C addresses that nobody acknowledges, ...");
@@ -335,7 +358,11 @@ void declare_run(Command& app, int& status) {
         "  puckloop run hello --in-process\n"
         "  puckloop run scenarios/own_binaries.toml --firmware pic=my.hex --linux ./controller -x 1\n"
         "  puckloop run hello --duration 5s --record --fault \"drop link=robot0.uart at=2s\"");
-    command->callback([options, &status] { status = run_scenario_file(*options); });
+    command->callback([options, &status] {
+        if (options->view_port != 0 && !options->view)
+            throw InputError("", "--view-port", "there is no page", "--view with it");
+        status = options->view ? view_scenario_file(*options) : run_scenario_file(*options);
+    });
 }
 
 }  // namespace puckloop::tools

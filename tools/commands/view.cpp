@@ -4,9 +4,9 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+#include "tools/viewer/serve.h"
 #include "traces/recorded_trace.h"
 #include "view/answers.h"
-#include "view/event_passes.h"
 #include "view/export_page.h"
 #include "view/live/driver.h"
 #include "view/server/http_server.h"
@@ -33,45 +33,12 @@ void export_file(const view::Recording& recording, const std::string& file) {
     if (file != "-") fmt::print("{}: {:.1f} MB\n", file, static_cast<double>(page.size()) * 1e-6);
 }
 
-void serve_on(view::HttpServer& server) {
-    fmt::print("{}\nopen this address in a browser; Ctrl-C ends\n", server.address());
-    std::fflush(stdout);
-    server.serve();
-    const auto& counts = server.counts();
-    std::string refused;
-    for (std::size_t i = 0; i < view::kRefusals; ++i)
-        if (counts.refused[i] > 0)
-            refused += fmt::format("{}{} ({})", refused.empty() ? "" : ", ", counts.refused[i],
-                                   name_of(static_cast<view::Refusal>(i)));
-    fmt::print("\n{} requests answered{}\n", counts.answered, refused.empty() ? "" : "; refused: " + refused);
-    std::fflush(stdout);
-}
-
 void serve(const view::Recording& recording, int port) {
     const view::EventReader events(recording);
     const view::Answers answers(recording, events);
     view::HttpServer server(static_cast<std::uint16_t>(port),
                             [&](std::string_view target) { return answers.get(target); });
-    serve_on(server);
-}
-
-/// A run that waits for its client.
-void serve_live(const std::string& folder, int port) {
-    view::Driver driver(folder);  // from here on the run's files are its own, not an earlier run's
-    const view::Recording recording(folder, true);
-    const view::EventPasses passes(recording, [&] { return driver.on(); });
-    const view::Answers answers(
-        recording, [&] { return passes.latest(); }, driver);
-    view::HttpServer server(
-        static_cast<std::uint16_t>(port), [&](std::string_view target) { return answers.get(target); },
-        [&](std::string_view target, const std::string& body) -> std::optional<view::HttpServer::Posted> {
-            if (target != "drive") return std::nullopt;
-            const std::string why = driver.request(body);
-            if (why.empty()) return view::HttpServer::Posted{true, {"application/json", driver.state()}};
-            return view::HttpServer::Posted{false, {"text/plain; charset=utf-8", why}};
-        });
-    fmt::print(stderr, "puckloop: the run stands still until the page lets it go on\n");
-    serve_on(server);
+    serve_until_interrupted(server);
 }
 
 }  // namespace

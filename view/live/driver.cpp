@@ -1,20 +1,13 @@
 #include "view/live/driver.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 
 namespace puckloop::view {
 
@@ -25,58 +18,23 @@ using nlohmann::json;
 
 constexpr int kStepMs = 100;  // while it plays: what trajectories are recorded in
 constexpr int kMostStepMs = 10'000;
+constexpr double kMostUntilMs = 60'000;
 constexpr double kMostSpeed = 1000.0;
 constexpr std::size_t kLongestCommand = 1000, kLongestName = 64;
-constexpr std::size_t kLongestReply = 16U << 20;
-
-/// The client's socket of control.json; empty: there is none, or the run has ended.
-std::string socket_of(const fs::path& folder) {
-    const auto note = json::parse(read_whole_file(folder / "control.json").value_or(""), nullptr, false);
-    return note.is_object() && note.contains("control") && note["control"].is_string()
-               ? note["control"].get<std::string>()
-               : std::string();
-}
 
 }  // namespace
 
 bool Driver::is_there(const fs::path& folder) {
-    return !socket_of(folder).empty();
+    return ControlClient::is_there(folder);
 }
 
-Driver::Driver(const fs::path& folder) {
-    const std::string path = socket_of(folder);
-    sockaddr_un place{};
-    place.sun_family = AF_UNIX;
-    if (path.empty() || path.size() >= sizeof place.sun_path)
-        throw InputError(folder.string(), "", "no run that takes a client goes on there",
-                         "`puckloop run SCENARIO --control`");
-    std::memcpy(place.sun_path, path.c_str(), path.size() + 1);
-    socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const timeval patience{10, 0};  // for its first line: a run that has a client lets others wait
-    if (socket_ < 0 || ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
-        ::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
-        const int reason = errno;
-        if (socket_ >= 0) ::close(socket_);
-        throw InputError(folder.string(), "",
-                         fmt::format("its run does not answer: {}", std::strerror(reason)),
-                         "a run that goes on and has no other client");
-    }
-    try {
-        const auto first = json::parse(ask(""), nullptr, false);
-        if (!first.is_object() || first.value("protocol", 0) != 1)
-            throw InputError(folder.string(), "", "its run speaks another control protocol",
-                             "the same version of puckloop for both");
-        time_s_ = first.value("time_s", 0.0);
-    } catch (const RunError&) {
-        ::close(socket_);
-        throw InputError(folder.string(), "", "its run does not answer",
-                         "a run that has no other client: one drives at a time");
-    } catch (...) {
-        ::close(socket_);
-        throw;
-    }
-    const timeval none{0, 0};
-    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &none, sizeof none);
+Driver::Driver(const fs::path& folder) : run_(folder) {
+    const auto first = json::parse(run_.greeting());
+    time_s_ = first.value("time_s", 0.0);
+    auto possible = json::parse(run_.ask(R"({"op": "faults"})"), nullptr, false);
+    if (!possible.is_object()) possible = json::object();
+    possible["boards"] = first.value("boards", json::array());
+    possible_ = possible.dump(-1, ' ', false, json::error_handler_t::replace);
     thread_ = std::thread([this] { run(); });
 }
 
@@ -87,32 +45,6 @@ Driver::~Driver() {
         changed_.notify_all();
     }
     thread_.join();
-    ::close(socket_);
-}
-
-/// Sends a line, unless it is empty, and takes the next one. Throws RunError when the run has closed the
-/// line.
-std::string Driver::ask(const std::string& request) {
-    const std::string line = request.empty() ? "" : request + "\n";
-    for (std::size_t sent = 0; sent < line.size();) {
-        const ::ssize_t now = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
-        if (now < 0 && errno == EINTR) continue;
-        if (now <= 0) throw RunError("the run has closed the line");
-        sent += static_cast<std::size_t>(now);
-    }
-    while (true) {
-        if (const std::size_t end = received_.find('\n'); end != std::string::npos) {
-            std::string answer = received_.substr(0, end);
-            received_.erase(0, end + 1);
-            return answer;
-        }
-        if (received_.size() > kLongestReply) throw RunError("a reply of the run is too long");
-        char piece[65536];
-        const ::ssize_t got = ::recv(socket_, piece, sizeof piece, 0);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) throw RunError("the run has closed the line");
-        received_.append(piece, static_cast<std::size_t>(got));
-    }
 }
 
 void Driver::run() noexcept {
@@ -153,15 +85,11 @@ bool Driver::serve() {
         end_run();
         return false;
     }
-    if (!work.command.empty()) {
-        act(work.command);
-        return true;
-    }
     const auto begun = Clock::now();
-    step(work.ms);
+    carry_out(work);
     std::unique_lock lock(mutex_);
     if (over_) return false;
-    if (speed > 0) {
+    if (work.kind == Work::Kind::Step && speed > 0) {
         const auto due = begun + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(1e-3 * work.ms / speed));
         changed_.wait_until(lock, due, [this] { return end_ || !playing_ || !waiting_.empty(); });
@@ -169,9 +97,92 @@ bool Driver::serve() {
     return true;
 }
 
+void Driver::carry_out(const Work& work) {
+    switch (work.kind) {
+    case Work::Kind::Step:
+        step(work.ms);
+        break;
+    case Work::Kind::Act:
+        return act(work.text);
+    case Work::Kind::Until:
+        until(work);
+        break;
+    case Work::Kind::Back:
+        restart(json{{"op", "back"}, {"to", work.to_s}}.dump(), fmt::format("back to {:.6g} s", work.to_s));
+        break;
+    case Work::Kind::Fault:
+        restart(json{{"op", "fault"}, {"fault", work.text}}.dump(), "fault " + work.text);
+        break;
+    case Work::Kind::Look:
+        break;
+    }
+    look();
+}
+
+/// What the page looks at, as it is now.
+void Driver::look() {
+    json items;
+    std::string board;
+    {
+        const std::lock_guard lock(mutex_);
+        if (over_ || board_.empty()) return;
+        items = json::parse(items_);
+        board = board_;
+    }
+    json values = json::array();
+    for (json& item : items) {
+        item["op"] = "read";
+        item["node"] = board;
+        json reply = json::parse(run_.ask(item.dump()), nullptr, false);
+        if (!reply.is_object()) throw RunError("a reply of the run that is none");
+        values.push_back(std::move(reply));
+    }
+    const json where = json::parse(run_.ask(json{{"op", "where"}, {"node", board}}.dump()), nullptr, false);
+    const std::lock_guard lock(mutex_);
+    look_ = json{{"board", board}, {"time_s", time_s_}, {"where", where}, {"values", values}}.dump(
+        -1, ' ', false, json::error_handler_t::replace);
+}
+
+void Driver::until(const Work& work) {
+    const json asked{
+        {"op", "step"}, {"for", fmt::format("{} ms", work.ms)}, {"until", json::parse(work.text)}};
+    const auto reply = json::parse(run_.ask(asked.dump()), nullptr, false);
+    if (!reply.is_object()) throw RunError("a reply of the run that is none");
+    const std::lock_guard lock(mutex_);
+    time_s_ = reply.value("time_s", time_s_);
+    const bool ok = reply.value("ok", false), met = ok && reply.value("met", false);
+    note("until " + work.text,
+         !ok ? reply.value("error", "refused")
+             : fmt::format("{:.6f} s: {}", time_s_, met ? "it holds" : "it did not hold until now"),
+         !met);
+    if (!reply.value("ended", false)) return;
+    over_ = true;
+    why_ = reply.value("ended_why", "");
+}
+
+/// The run is begun again from an earlier time or with a fault.
+void Driver::restart(const std::string& request, const std::string& command) {
+    const auto reply = json::parse(run_.ask(request), nullptr, false);
+    if (!reply.is_object()) throw RunError("a reply of the run that is none");
+    const std::lock_guard lock(mutex_);
+    time_s_ = reply.value("time_s", time_s_);
+    const bool ok = reply.value("ok", false);
+    note(command, ok ? fmt::format("{:.6f} s: done", time_s_) : reply.value("error", "refused"), !ok);
+    if (ok) ++epoch_;
+    if (!reply.value("ended", false)) return;
+    over_ = true;
+    why_ = reply.value("ended_why", "");
+}
+
+/// Under the lock.
+void Driver::note(const std::string& command, const std::string& answer, bool refused) {
+    acts_.push_back({++act_number_, command, answer, refused});
+    if (acts_.size() > kKeptActs) acts_.erase(acts_.begin());
+}
+
 void Driver::step(int ms) {
     const auto reply =
-        json::parse(ask(json{{"op", "step"}, {"for", fmt::format("{} ms", ms)}}.dump()), nullptr, false);
+        json::parse(run_.ask(json{{"op", "step"}, {"for", fmt::format("{} ms", ms)}}.dump()), nullptr, false);
     if (!reply.is_object()) throw RunError("a reply of the run that is none");
     const std::lock_guard lock(mutex_);
     time_s_ = reply.value("time_s", time_s_);
@@ -193,19 +204,15 @@ void Driver::step(int ms) {
 }
 
 void Driver::act(const std::string& command) {
-    const auto reply = json::parse(ask(json{{"op", "act"}, {"command", command}}.dump()), nullptr, false);
+    const auto reply =
+        json::parse(run_.ask(json{{"op", "act"}, {"command", command}}.dump()), nullptr, false);
     const std::lock_guard lock(mutex_);
-    Act done{++act_number_, command, "", false};
-    if (!reply.is_object() || !reply.value("ok", false)) {
-        done.refused = true;
-        done.answer = reply.is_object() ? reply.value("error", "refused") : "refused";
-    }
-    acts_.push_back(std::move(done));
-    if (acts_.size() > kKeptActs) acts_.erase(acts_.begin());
+    const bool ok = reply.is_object() && reply.value("ok", false);
+    note(command, ok ? "" : reply.is_object() ? reply.value("error", "refused") : "refused", !ok);
 }
 
 void Driver::end_run() {
-    const auto reply = json::parse(ask(json{{"op", "end"}}.dump()), nullptr, false);
+    const auto reply = json::parse(run_.ask(json{{"op", "end"}}.dump()), nullptr, false);
     const std::lock_guard lock(mutex_);
     if (reply.is_object()) {
         time_s_ = reply.value("time_s", time_s_);
@@ -242,11 +249,39 @@ std::string Driver::request(const std::string& text) {
         const double ms = number_of("ms", 0.0);
         if (!(ms >= 1.0 && ms <= kMostStepMs)) return "a step of 1 to 10,000 ms is expected";
         playing_ = false;
-        waiting_.push_back({static_cast<int>(ms), ""});
+        waiting_.push_back({Work::Kind::Step, static_cast<int>(ms)});
     } else if (what == "act") {
         const std::string command = string_of("command");
         if (command.empty() || command.size() > kLongestCommand) return "a command is expected";
-        waiting_.push_back({0, command});
+        waiting_.push_back({.kind = Work::Kind::Act, .text = command});
+    } else if (what == "until") {
+        const double ms = number_of("ms", kMostUntilMs);
+        const auto condition = asked.find("condition");
+        if (condition == asked.end() || !condition->is_object()) return "a condition is expected";
+        if (!(ms >= 1.0 && ms <= kMostUntilMs)) return "1 to 60,000 ms are expected";
+        playing_ = false;
+        waiting_.push_back(
+            {.kind = Work::Kind::Until, .ms = static_cast<int>(ms), .text = condition->dump()});
+    } else if (what == "back") {
+        const double to = number_of("to_s", -1.0);
+        if (!(to >= 0.0)) return "a time is expected";
+        playing_ = false;
+        waiting_.push_back({.kind = Work::Kind::Back, .to_s = to});
+    } else if (what == "fault") {
+        const std::string fault = string_of("fault");
+        if (fault.empty() || fault.size() > kLongestCommand) return "a fault is expected";
+        waiting_.push_back({.kind = Work::Kind::Fault, .text = fault});
+    } else if (what == "look") {
+        const auto items = asked.find("items");
+        const std::string board = string_of("board");
+        if (items == asked.end() || !items->is_array() || items->size() > kMostItems ||
+            !std::all_of(items->begin(), items->end(), [](const json& item) { return item.is_object(); }))
+            return "a list of at most 40 things to read is expected";
+        if (board.size() > kLongestName) return "a board's name is expected";
+        board_ = board;
+        items_ = items->dump();
+        look_ = "null";
+        if (!board.empty() && !playing_) waiting_.push_back({.kind = Work::Kind::Look});
     } else if (what == "end") {
         end_ = true;
     } else if (what != "take") {
@@ -264,9 +299,15 @@ std::string Driver::state() const {
                         {"command", act.command},
                         {"answer", act.answer},
                         {"refused", act.refused}});
-    const json state{{"time_s", time_s_}, {"playing", playing_}, {"speed", speed_}, {"over", over_},
-                     {"why", why_},       {"driver", driver_},   {"acts", acts}};
+    const json state{{"time_s", time_s_}, {"playing", playing_}, {"speed", speed_},
+                     {"over", over_},     {"why", why_},         {"driver", driver_},
+                     {"acts", acts},      {"epoch", epoch_},     {"look", json::parse(look_)}};
     return state.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::uint64_t Driver::epoch() const {
+    const std::lock_guard lock(mutex_);
+    return epoch_;
 }
 
 bool Driver::on() const {

@@ -3,6 +3,8 @@
 // things done to its world. One client of the control protocol (docs/control_protocol.md), for all pages of a
 // viewer.
 
+#include "view/live/control_client.h"
+
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -28,18 +30,27 @@ class Driver {
     static bool is_there(const std::filesystem::path& folder);
 
     /// A request of a page, JSON: "page" (its name), "do": "play" with "speed" (times real time; 0: as fast
-    /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "end", "take". The first
-    /// page that asks for anything drives, others are refused until they "take" it. Returns "" or why it is
-    /// refused.
+    /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "until" with "condition" (of
+    /// the protocol's step) and "ms" (at most so long), "back" with "to_s", "fault" with "fault" (as
+    /// --fault), "look" with "board" and "items" (requests to read, at most kMostItems), "end", "take". The
+    /// first page that asks for anything drives, others are refused until they "take" it. Returns "" or why
+    /// it is refused.
     std::string request(const std::string& text);
 
-    /// JSON: time_s, playing, speed, over, why, driver, acts (the latest: number, command, answer, refused).
+    /// JSON: time_s, playing, speed, over, why, driver, epoch (rises when what was recorded changes: the run
+    /// went back), acts (the latest: number, command, answer, refused), look (what was asked for at the time:
+    /// "where" and "values").
     std::string state() const;
+    /// JSON: boards, and what faults the run can have (run/driven/possible_faults.h).
+    const std::string& possible() const { return possible_; }
     /// The run goes on.
     bool on() const;
+    /// As in state().
+    std::uint64_t epoch() const;
 
     static constexpr std::size_t kMostWaiting = 100;  ///< steps and acts that are not done yet
     static constexpr std::size_t kKeptActs = 50;
+    static constexpr std::size_t kMostItems = 40;  ///< that a page looks at
 
   private:
     struct Act {
@@ -48,24 +59,32 @@ class Driver {
         bool refused = false;
     };
     struct Work {
-        int ms = 0;           // a step, if not 0
-        std::string command;  // an act, if not empty
+        enum class Kind { Step, Act, Until, Back, Fault, Look };
+        Kind kind = Kind::Step;
+        int ms = 0;          // of a step
+        double to_s = 0.0;   // of going back
+        std::string text{};  // command, fault, or condition (JSON)
     };
     void run() noexcept;
     bool serve();
-    std::string ask(const std::string& request);
+    void carry_out(const Work& work);
     void step(int ms);
     void act(const std::string& command);
+    void until(const Work& work);
+    void restart(const std::string& request, const std::string& command);
+    void look();
+    void note(const std::string& command, const std::string& answer, bool refused);
     void end_run();
 
-    int socket_ = -1;
-    std::string received_;
+    ControlClient run_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Work> waiting_;
     std::vector<Act> acts_;
     std::uint64_t act_number_ = 0;
     std::string driver_, why_;
+    std::string possible_, board_, items_ = "[]", look_ = "null";  // JSON but for the board's name
+    std::uint64_t epoch_ = 0;
     double time_s_ = 0.0, speed_ = 1.0;
     bool playing_ = false, end_ = false, over_ = false;
     std::thread thread_;

@@ -1,5 +1,7 @@
 // Joins the parts: reads the run, keeps the time, hears keys and buttons, draws when something has changed.
 import { ArenaView } from './arena.js';
+import { BoardPart, conditionOf } from './board.js';
+import { FaultForm } from './fault_form.js';
 import { Live, sensorsAgainAfter } from './live.js';
 import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors } from './model.js';
 import { palette } from './palette.js';
@@ -8,6 +10,7 @@ import { makeSource } from './source.js';
 import { TimelineView } from './timeline.js';
 
 const element = (id) => document.getElementById(id);
+const passOf = (generation) => Math.floor(generation / 65536);  // of reading the events of a run that goes on
 const pollMilliseconds = 250, recentMilliseconds = 150;
 
 class App {
@@ -24,6 +27,7 @@ class App {
     const head = await this.source.head();
     const paths = parsePoses(await this.source.poses(), head.paths);
     this.run = { head, paths, leds: new Leds(), events: new Events(), beams: null, sensors: null, tracks: [], rows: [],
+      begin: () => { this.stale = passOf(this.run.events.generation); this.run.events = new Events(); this.run.leds = new Leds(); this.run.beams = null; this.select(-1); },
       now: 0, duration: Math.max(head.duration_s, 1e-3), redraw: () => { this.dirty = true; },
       sensorsOf: async (robot) => parseSensors(await this.source.sensors(robot), head.sensors) };
     const redraw = this.run.redraw;
@@ -36,6 +40,9 @@ class App {
       await this.live.refresh();
       element('live').hidden = false;
       element('speed').append(new Option('max', 0));
+      const possible = await this.source.json('possible');
+      this.board = new BoardPart(element('board-part'), possible.boards || [], (request) => this.drive(request));
+      this.faultForm = new FaultForm(element('fault-form'), possible, (request) => this.drive(request));
       this.arena.carry = (name, to) => this.drive({ do: 'act', command: `move ${name} to ${to.x.toFixed(4)} m, ${to.y.toFixed(4)} m` });
     }
     this.fill();
@@ -105,7 +112,9 @@ class App {
     const { run } = this;
     for (;;) {
       const status = await this.source.status();
+      if (passOf(status.generation) === this.stale) return;  // from before the run went back
       run.tracks = status.tracks;
+      this.rows();  // a run that went back has fewer
       if (status.generation !== run.events.generation && run.leds.count > 0) run.leds = new Leds();
       let more = run.events.count < status.events || run.events.generation !== status.generation;
       while (more) {
@@ -264,6 +273,10 @@ class App {
       on('step-1', 'click', () => { this.live.atEdge = true; return this.drive({ do: 'step', ms: 1 }); });
       on('step-100', 'click', () => { this.live.atEdge = true; return this.drive({ do: 'step', ms: 100 }); });
       on('to-edge', 'click', () => { this.live.atEdge = true; this.run.redraw(); });
+      const back = (to) => { this.live.atEdge = true; return this.drive({ do: 'back', to_s: Math.max(0, to) }); };
+      on('back-5', 'click', () => back(this.live.state.time_s - 5));
+      on('back-here', 'click', () => back(this.run.now));
+      on('fault-open', 'click', () => { this.play(false); this.faultForm.open(this.live.state.time_s); });
       on('press-reset', 'click', () => this.drive({ do: 'act', command: `reset ${this.run.head.stations[this.robot]}` }));
       on('end-run', 'click', () => this.drive({ do: 'end' }));
       on('take', 'click', () => this.drive({ do: 'take' }));
@@ -286,11 +299,19 @@ class App {
       if (event.key === 'Enter' && target.value.trim()) this.drive({ do: 'act', command: target.value.trim() });
       return undefined;
     }
+    if (target.id === 'until') {
+      if (event.key !== 'Enter' || !target.value.trim()) return undefined;
+      const condition = conditionOf(target.value.trim(), this.board.board);
+      target.classList.toggle('failed', !condition);
+      if (condition) { this.live.atEdge = true; this.drive({ do: 'until', condition }); }
+      return undefined;
+    }
+    if (target.tagName === 'INPUT' && target.type !== 'range' && target.type !== 'checkbox' && target.id !== 'find') return undefined;
     if (target.id === 'find' && event.key === 'Enter') {
       event.preventDefault();
       return this.step(!event.shiftKey).catch((error) => this.trouble(error));
     }
-    if (target.id === 'find' || target.tagName === 'SELECT' || event.ctrlKey || event.metaKey || element('help').open) {
+    if (target.id === 'find' || target.tagName === 'SELECT' || event.ctrlKey || event.metaKey || element('help').open || element('fault-form').open) {
       if (target.id === 'find' && event.key === 'Escape') target.blur();
       return undefined;
     }
@@ -329,10 +350,13 @@ class App {
     document.body.dataset.playing = state.playing;
     document.body.dataset.simulated = state.time_s.toFixed(6);
     document.body.dataset.over = state.over;
+    document.body.dataset.epoch = state.epoch;
+    this.board.draw(state.look);
     const last = state.acts.at(-1);
     const text = state.over ? `the run is over: ${state.why}` : last ? `${last.command}: ${last.answer || 'done in the next step'}` : '';
-    if (text !== this.said) {
-      this.said = text;
+    const said = `${last ? last.number : 0} ${text}`;
+    if (said !== this.said) {
+      this.said = said;
       element('detail').textContent = text;
       element('detail').className = last && last.refused ? 'failed' : '';
     }

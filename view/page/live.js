@@ -27,10 +27,16 @@ export class Live {
   constructor(run, source, changed, trouble) {
     Object.assign(this, { run, source, changed, trouble });
     this.page = Array.from(crypto.getRandomValues(new Uint8Array(8)), (byte) => byte.toString(16)).join('');
-    this.state = { time_s: 0, playing: false, speed: 1, over: false, why: '', driver: '', acts: [] };
+    this.state = { time_s: 0, playing: false, speed: 1, over: false, why: '', driver: '', acts: [], epoch: 0, look: null };
     this.offsets = { 'new-robots': 0, 'new-objects': 0 };
     this.atEdge = true;
     run.paths.length = 0;
+  }
+  /** The run went back: what is known of it is read again. */
+  begin() {
+    this.offsets = { 'new-robots': 0, 'new-objects': 0 };
+    this.run.paths.length = 0;
+    this.run.begin();
   }
   get drives() { return this.state.driver === '' || this.state.driver === this.page; }
   edge() {
@@ -45,7 +51,9 @@ export class Live {
     }
   }
   async refresh() {
+    const { epoch } = this.state;
     this.state = await this.source.json('drive');
+    if (this.state.epoch !== epoch) this.begin();
     for (const [name, robot] of [['new-robots', true], ['new-objects', false]])
       for (;;) {
         const bytes = await this.source.bytes(`${name}?from=${this.offsets[name]}`);
@@ -61,7 +69,6 @@ export class Live {
     const answer = await fetch('drive', { method: 'POST', headers: { 'Content-Type': 'application/json' },
       body: JSON.stringify({ page: this.page, ...request }) });
     if (!answer.ok) throw new Error(await answer.text());
-    this.state = await answer.json();
     this.changed();
   }
   /** The time to show `milliseconds` after `now`: at the run's speed, up to what is known of it. */

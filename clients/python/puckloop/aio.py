@@ -20,7 +20,6 @@ import asyncio
 import os
 import pathlib
 import re
-import tempfile
 import time
 from typing import Any, Mapping, Sequence, TypeVar
 
@@ -296,18 +295,8 @@ class Run:
     async def save(self, file: str | os.PathLike[str]) -> pathlib.Path:
         return await self._do(self._session.save(pathlib.Path(file).absolute()))
 
+    async def back(self, to: Time) -> None:
+        await self._do(self._session.back(to))
+
     async def fault(self, *faults: str) -> None:
-        launched = self._launched
-        if isinstance(launched, Found):
-            raise RequestError("faults are for runs that this program began: give this one --fault when it is started")
-        with tempfile.TemporaryDirectory(prefix="puckloop-") as folder:
-            snapshot = await self.save(pathlib.Path(folder) / "run.snapshot")
-            await (await Run._begin(Launched(launched.after(snapshot, faults, pathlib.Path(folder) / "copy")))).close()
-            await self._do(self._session.keep_frames())
-            self._line.close()
-            await self._gone()
-            after = Launched(launched.after(snapshot, faults, self.results))
-            other = await Run._begin(after)
-        self._launched = after.inherit(launched)
-        self._line = other._line
-        await self._do(self._session.capture_again())
+        await self._do(self._session.fault(faults))

@@ -121,16 +121,6 @@ class Launched:
         if self._temporary:
             self._temporary.cleanup()
 
-    def after(self, snapshot: pathlib.Path, faults: Sequence[str], out: pathlib.Path) -> Plan:
-        """Goes on from there, with faults besides."""
-        return of_snapshot(snapshot, out=out, faults=[*self.plan.faults, *faults], duration=None,
-                           in_process=self.plan.in_process)
-
-    def inherit(self, before: Launched) -> Launched:
-        """The results folder of the run that this one goes on from, if it was a temporary one."""
-        self._temporary, before._temporary = before._temporary, None
-        return self
-
 
 class Found:
     """A run that somebody else began with --control. StartError: there is none in this results folder."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import pathlib
 import re
-import tempfile
 import time
 from typing import Any, Mapping, Sequence, TypeVar
 
@@ -143,7 +142,8 @@ class Run:
     @property
     def faults(self) -> list[str]:
         """Those that it was begun with, and those of fault()."""
-        return list(self._launched.plan.faults) if isinstance(self._launched, Launched) else []
+        begun = list(self._launched.plan.faults) if isinstance(self._launched, Launched) else []
+        return begun + self._session.faults
 
     @property
     def nodes(self) -> list[str]:
@@ -283,21 +283,13 @@ class Run:
         """As the function of this name."""
         return from_snapshot(file, **keywords)
 
+    def back(self, to: Time) -> None:
+        """To an earlier time of the run, from which it goes on again: what was written to boards and done to the world
+        from then on is taken back, and so are trace and results. RequestError: a time that is not past, a run with
+        lines to the outside."""
+        self._do(self._session.back(to))
+
     def fault(self, *faults: str) -> None:
-        """Goes on with these faults besides (as --fault, beginning later than now): the run is saved and gone on
-        with from there, in a process of its own and the same results folder. StartError: a fault was refused, which
-        is found out by a copy; the run is as before."""
-        launched = self._launched
-        if isinstance(launched, Found):
-            raise RequestError("faults are for runs that this program began: give this one --fault when it is started")
-        with tempfile.TemporaryDirectory(prefix="puckloop-") as folder:
-            snapshot = self.save(pathlib.Path(folder) / "run.snapshot")
-            Run(Launched(launched.after(snapshot, faults, pathlib.Path(folder) / "copy"))).close()
-            self._do(self._session.keep_frames())
-            self._line.close()
-            self._gone()
-            after = Launched(launched.after(snapshot, faults, self.results))
-            other = Run(after)
-        self._launched = after.inherit(launched)
-        self._line = other._line
-        self._do(self._session.capture_again())
+        """Goes on with these faults besides (as --fault, beginning now or later). RequestError: one is refused; the
+        run is as before."""
+        self._do(self._session.fault(faults))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pathlib
 import re
-from typing import Any, Generator, Mapping, Tuple, TypeVar
+from typing import Any, Generator, Mapping, Sequence, Tuple, TypeVar
 
 from .errors import RunEnded
 from .records import Ended, Frame, Register, Stepped, Value
@@ -41,9 +41,8 @@ class Session:
         self.links: list[str] = [link["name"] for link in greeting["links"]]
         self.time_ps: int = int(greeting["time_ps"])
         self.ended: Ended | None = None
-        self.captures: list[dict[str, str]] = []
+        self.faults: list[str] = []  #: added since
         self.texts: list[Text] = []
-        self._kept: list[Frame] = []
 
     @property
     def time_s(self) -> float:
@@ -59,12 +58,16 @@ class Session:
         self.time_ps = int(reply["time_ps"])
         return bool(reply.get("ended"))
 
+    def _goes_on(self) -> None:
+        if self.ended is not None:
+            raise RunEnded(f"the run ended at {self.time_s:.6f} s: {self.ended.why}", self.ended.success)
+
     # Time.
     def step(self, to: Time | None, for_: Time | None, until: Mapping[str, Any] | None,
              every: Time | None) -> Operation[Stepped]:
         reply = yield "step", {"to": to, "for": for_, "until": until, "every": every}
-        if self.ended is not None and not reply.get("met"):
-            raise RunEnded(f"the run ended at {self.time_s:.6f} s: {self.ended.why}", self.ended.success)
+        if not reply.get("met"):
+            self._goes_on()
         frame = Frame.of(reply["frame"]) if reply.get("frame") else None
         return Stepped(self.time_ps, bool(reply["met"]), frame, tuple(reply.get("acts", ())))
 
@@ -74,22 +77,10 @@ class Session:
         keys = {"link": link, "from": sender, "kind": kind, "value": value, "signal": signal}
         frame = {key: text for key, text in keys.items() if text is not None}
         yield "capture", {"frame": frame}
-        self.captures.append(frame)
-
-    def capture_again(self) -> Operation[None]:
-        """In a run that goes on from a snapshot of this one."""
-        for frame in self.captures:
-            yield "capture", {"frame": frame}
 
     def frames(self) -> Operation[list[Frame]]:
         reply = yield "frames", {}
-        kept, self._kept = self._kept, []
-        return kept + [Frame.of(row) for row in reply["frames"]]
-
-    def keep_frames(self) -> Operation[None]:
-        """Those of a run that goes on in another process: for the next frames()."""
-        if self.captures:
-            self._kept = yield from self.frames()
+        return [Frame.of(row) for row in reply["frames"]]
 
     def act(self, command: str) -> Operation[None]:
         yield "act", {"command": command}
@@ -97,6 +88,17 @@ class Session:
     def save(self, file: pathlib.Path) -> Operation[pathlib.Path]:
         yield "save", {"file": str(file)}
         return file
+
+    def back(self, to: Time) -> Operation[None]:
+        yield "back", {"to": to}
+        self._goes_on()
+        for text in self.texts:
+            text.bytes = b""
+
+    def fault(self, faults: Sequence[str]) -> Operation[None]:
+        yield "fault", {"fault": list(faults)}
+        self._goes_on()
+        self.faults += faults
 
     def log(self, node: str) -> str:
         file = self.results / f"{node}.log"

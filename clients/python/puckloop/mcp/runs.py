@@ -59,6 +59,11 @@ class Kept:
         self._texts: dict[tuple[str, str], bytes] = {}
         run.capture(kind="uart")
 
+    def back(self, to: str) -> None:
+        self.drain()
+        self.run.back(to)
+        self._texts.clear()
+
     def drain(self) -> None:
         """Takes what the lines carried; the run keeps only so much of it."""
         if self.run.ended is not None:

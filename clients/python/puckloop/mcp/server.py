@@ -27,7 +27,7 @@ PARSE, INVALID, METHOD, PARAMS = -32700, -32600, -32601, -32602
 INSTRUCTIONS = (
     "puckloop emulates the boards of e-puck robots with their unmodified firmware. start_run begins a scenario that "
     "stands still; step and expect let simulated time go on; decode, read and log look at it; act, write and "
-    "inject_fault change it; save_snapshot and start_from_snapshot return to a time; end_run gives the verdict.")
+    "inject_fault change it; go_back, save_snapshot and start_from_snapshot return to a time; end_run gives the verdict.")
 
 
 class Wrong(Exception):

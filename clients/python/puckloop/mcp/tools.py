@@ -85,7 +85,9 @@ class Toolbox:
                  self._write, True),
             Tool("act", "Does something to the world in its next step, such as 'move can to 10 cm, 0 cm'.",
                  object_of({"run": RUN, "command": text("as of puckloop act")}, "run", "command"), self._act, True),
-            Tool("inject_fault", "Goes on with a fault that begins later than now; a refused one leaves the run alone.",
+            Tool("go_back", "Takes the run back to an earlier time; what was done to it from then on is taken back.",
+                 object_of({"run": RUN, "to": TIME}, "run", "to"), self._back, True),
+            Tool("inject_fault", "Goes on with a fault that begins now or later; a refused one leaves the run alone.",
                  object_of({"run": RUN, "fault": text("such as 'drop link=robot0.uart begin=2s count=1'")}, "run",
                            "fault"), self._fault, True),
             Tool("save_snapshot", "Saves the whole run as it is; the run goes on.",
@@ -271,6 +273,12 @@ class Toolbox:
             kept.drain()
             kept.run.fault(fault)
             return {"time_s": kept.run.time_s, "faults": kept.run.faults}
+
+    def _back(self, it: Arguments, _: Call) -> Result:
+        kept = self._runs.named(it["run"])
+        with kept.turn:
+            kept.back(it["to"])
+            return {"time_s": kept.run.time_s}
 
     def _save(self, it: Arguments, _: Call) -> Result:
         file, kept = self._folders.snapshot(it["file"]), self._runs.named(it["run"])

@@ -1,19 +1,26 @@
 #pragma once
-// The past of a run under a debugger: snapshots of the whole run in memory, so that any instant so far can be
-// had again from the one before it (docs/debugging.md).
+// The past of a run that can go back, under a debugger or a client: snapshots of the whole run in memory, so
+// that any instant so far can be had again from the one before it (docs/debugging.md).
 //
 // What links have carried is kept once for all of them: the record at one snapshot is the beginning of the
 // record at any later one.
 
 #include "cosim/resume/run_snapshot.h"
+#include "run/description/run_request.h"
+#include "run/description/run_setup.h"
+#include "run/expectations/line_watch.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace puckloop::tools {
+
+/// Why a run cannot go back; empty: it can.
+std::string why_not_back(const RunSetup& setup, const RunRequest& request);
 
 class RunHistory {
   public:
@@ -25,8 +32,9 @@ class RunHistory {
     /// What goes with the run itself.
     struct Place {
         std::vector<Board> boards;
-        std::uint64_t trace = 0;   ///< bytes of trace.csv
-        std::uint64_t record = 0;  ///< bytes of record.csv, where there is one
+        std::uint64_t trace = 0;                ///< bytes of trace.csv
+        std::uint64_t record = 0;               ///< bytes of record.csv, where there is one
+        std::vector<LineWatch::Watch> lines{};  ///< what expectations had seen of serial lines
     };
 
     /// The run begins from `origin`, null for power-up, before which there is nothing.
@@ -42,6 +50,11 @@ class RunHistory {
     const Place& place(std::size_t instant) const { return instants_[instant].place; }
     /// The latest instant before which `board` had not begun the instruction at `cycle`; nothing: none.
     std::optional<std::size_t> before(std::size_t board, std::uint64_t cycle) const;
+    /// The latest instant that is not after `time`; the first if there is none.
+    std::size_t at_or_before(cosim::Time time) const;
+    cosim::Time time(std::size_t instant) const;
+    /// What comes after `instant` will be another run: its snapshots go.
+    void forget_after(std::size_t instant);
     /// The snapshot to begin from, null for power-up.
     std::shared_ptr<const cosim::RunSnapshot> snapshot(std::size_t instant) const;
 

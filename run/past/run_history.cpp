@@ -1,4 +1,4 @@
-#include "run/debugging/run_history.h"
+#include "run/past/run_history.h"
 
 #include <algorithm>
 #include <utility>
@@ -8,6 +8,14 @@ namespace puckloop::tools {
 using cosim::RunSnapshot;
 using cosim::Time;
 using cosim::WireState;
+
+std::string why_not_back(const RunSetup& setup, const RunRequest& request) {
+    for (const PlannedNode& node : setup.nodes)
+        if (node.outside) return node.name + " is a line to the outside, which cannot go back";
+    if (request.realtime || request.paced) return "the run is paced by the wall clock, which cannot go back";
+    if (!request.live.empty()) return "--live has given away what would have to be taken back";
+    return {};
+}
 
 void RunHistory::begin(std::shared_ptr<const RunSnapshot> origin, Place place) {
     last_ = origin ? origin->time : 0;
@@ -45,6 +53,22 @@ std::optional<std::size_t> RunHistory::before(std::size_t board, std::uint64_t c
     for (std::size_t i = instants_.size(); i > 0; --i)
         if (instants_[i - 1].place.boards[board].cycle < cycle) return i - 1;
     return std::nullopt;
+}
+
+std::size_t RunHistory::at_or_before(Time time) const {
+    for (std::size_t i = instants_.size(); i > 1; --i)
+        if (this->time(i - 1) <= time) return i - 1;
+    return 0;
+}
+
+Time RunHistory::time(std::size_t instant) const {
+    const auto& snapshot = instants_[instant].snapshot;
+    return snapshot ? snapshot->time : 0;
+}
+
+void RunHistory::forget_after(std::size_t instant) {
+    last_ = time(instant);
+    instants_.resize(instant + 1);
 }
 
 std::shared_ptr<const RunSnapshot> RunHistory::snapshot(std::size_t instant) const {

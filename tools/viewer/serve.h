@@ -1,0 +1,18 @@
+#pragma once
+// The page over a run that goes on: of `view FOLDER`, and of `run --view`.
+
+#include "view/server/http_server.h"
+
+#include <string>
+
+namespace puckloop::tools {
+
+/// Prints the page's address, serves until Ctrl-C, prints how many requests came.
+void serve_until_interrupted(view::HttpServer& server);
+
+/// Drives the run in `folder`, which waits for its client, and serves its page on `port` (0: any that is
+/// free) until Ctrl-C, which ends the run. `opens`: in the user's browser, where there is a display. Throws
+/// InputError.
+void serve_live(const std::string& folder, int port, bool opens = false);
+
+}  // namespace puckloop::tools
