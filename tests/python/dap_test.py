@@ -230,6 +230,22 @@ class Dap(InFolder):
         self.assertIn("too many", editor.refused("disassemble", memoryReference="0x100", instructionCount=10**9))
         self.assertEqual(editor.end(), 0)
 
+    def test_extension_of_vs_code(self):
+        folder = SOURCE / "clients" / "vscode"
+        package = json.loads((folder / "package.json").read_text())
+        self.assertEqual(package["version"], os.environ["PUCKLOOP_VERSION"])
+        debugger = package["contributes"]["debuggers"][0]
+        ended = subprocess.run([folder / debugger["program"]], input=b"", capture_output=True, timeout=SECONDS, check=False)
+        self.assertEqual((ended.returncode, ended.stderr), (0, b""))
+        # What it offers, and what `puckloop new` writes, is what `launch` takes.
+        offered = debugger["configurationAttributes"]["launch"]["properties"]
+        taken = set(re.findall(r'arguments, "(\w+)"', (SOURCE / "bench/debugger/dap_server.cpp").read_text())) | {"uart1", "uart2"}
+        self.assertEqual(set(offered) - taken, set())
+        subprocess.run([PROGRAM, "new", "mine"], cwd=self.folder, check=True, capture_output=True)
+        made = json.loads((self.folder / "mine" / ".vscode" / "launch.json").read_text())["configurations"][0]
+        self.assertEqual(made["type"], debugger["type"])
+        self.assertEqual(set(made) - {"name", "type", "request"} - set(offered), set())
+
     def test_bytes_that_are_no_messages(self):
         for bytes_, status in ((b"", 0), (b"GET / HTTP/1.1\r\n\r\n", 2), (b"Content-Length: 9999999999\r\n\r\n", 2),
                                (b"Content-Length: 5\r\n\r\nabcde", 2), (b"x" * 5000, 2),
