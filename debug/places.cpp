@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -11,8 +12,10 @@ Places::Places(const std::map<std::string, image::Symbol>& symbols, image::LineT
     : lines_(std::move(lines)) {
     std::map<std::uint32_t, bool> global;
     for (const auto& [name, symbol] : symbols) {
-        // Compilers' labels inside functions begin with ".L".
-        if (symbol.space != image::Space::Program || name.empty() || name.front() == '.') continue;
+        // Compilers' labels inside functions begin with ".L", the assembler's own have a control character.
+        const bool label = name.empty() || name.front() == '.' ||
+                           std::any_of(name.begin(), name.end(), [](char c) { return c > 0 && c < ' '; });
+        if (symbol.space != image::Space::Program || label) continue;
         const auto [at, first] = functions_.try_emplace(symbol.address, name);
         if (first)
             global[symbol.address] = symbol.global;

@@ -119,6 +119,8 @@ json disassembled(Session& session, std::uint32_t address, std::int64_t offset, 
     // Back from `address`: instructions have one or two words, so they are counted from the function's begin.
     std::vector<std::uint32_t> before;
     std::uint32_t function = program.function_of(address);
+    constexpr std::uint32_t kFarthest = 0x10000;
+    if (address - function > kFarthest) function = address;  // what lies between is of no function
     for (std::uint32_t pc = function; pc < address && chip.is_code(pc); pc += chip.instruction(pc).size)
         before.push_back(pc);
     json list = json::array();

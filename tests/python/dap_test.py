@@ -155,6 +155,8 @@ class Dap(InFolder):
         self.assertEqual((len(code), int(code[2]["address"], 16)), (6, int(begin, 16)))
         self.assertEqual(code[2]["line"], line)
         self.assertEqual(len(editor.ask("disassemble", memoryReference="0x000000", instructionOffset=-5, instructionCount=10)["instructions"]), 10)
+        far = editor.ask("disassemble", memoryReference="0x7ffffe", instructionOffset=-3, instructionCount=6)["instructions"]
+        self.assertEqual([one["presentationHint"] for one in far], ["invalid"] * 6)
         self.assertEqual(editor.end(), 0)
 
     def test_range_and_bearing_board(self):
@@ -194,8 +196,15 @@ class Dap(InFolder):
         self.assertEqual(editor.end(), 0)
 
     @unittest.skipUnless(IMAGES, "PUCKLOOP_IMAGES names no folder: real images are skipped")
-    def test_real_image_of_xc16(self):
-        editor = self.begin(pathlib.Path(IMAGES) / "demoGCtronic.X.production.elf", stopOnEntry=True)
+    def test_real_images_of_xc16_and_c30(self):
+        for name in ("demoGCtronic.X.production.elf", "randb.cof"):
+            image = pathlib.Path(IMAGES) / name
+            if not image.exists():
+                self.skipTest(f"{image} is not there")
+            self.check_real_image(image)
+
+    def check_real_image(self, image):
+        editor = self.begin(image, stopOnEntry=True)
         editor.ask("setFunctionBreakpoints", breakpoints=[{"name": "main"}])
         editor.ask("configurationDone")
         editor.event("stopped")
@@ -220,6 +229,22 @@ class Dap(InFolder):
         self.assertIn("is no address", editor.refused("readMemory", memoryReference="here", count=1))
         self.assertIn("too many", editor.refused("disassemble", memoryReference="0x100", instructionCount=10**9))
         self.assertEqual(editor.end(), 0)
+
+    def test_extension_of_vs_code(self):
+        folder = SOURCE / "clients" / "vscode"
+        package = json.loads((folder / "package.json").read_text())
+        self.assertEqual(package["version"], os.environ["PUCKLOOP_VERSION"])
+        debugger = package["contributes"]["debuggers"][0]
+        ended = subprocess.run([folder / debugger["program"]], input=b"", capture_output=True, timeout=SECONDS, check=False)
+        self.assertEqual((ended.returncode, ended.stderr), (0, b""))
+        # What it offers, and what `puckloop new` writes, is what `launch` takes.
+        offered = debugger["configurationAttributes"]["launch"]["properties"]
+        taken = set(re.findall(r'arguments, "(\w+)"', (SOURCE / "bench/debugger/dap_server.cpp").read_text())) | {"uart1", "uart2"}
+        self.assertEqual(set(offered) - taken, set())
+        subprocess.run([PROGRAM, "new", "mine"], cwd=self.folder, check=True, capture_output=True)
+        made = json.loads((self.folder / "mine" / ".vscode" / "launch.json").read_text())["configurations"][0]
+        self.assertEqual(made["type"], debugger["type"])
+        self.assertEqual(set(made) - {"name", "type", "request"} - set(offered), set())
 
     def test_bytes_that_are_no_messages(self):
         for bytes_, status in ((b"", 0), (b"GET / HTTP/1.1\r\n\r\n", 2), (b"Content-Length: 9999999999\r\n\r\n", 2),

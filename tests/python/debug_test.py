@@ -244,6 +244,19 @@ class RealImage(Debugged):
         self.assertIn(".c:", said[3])
         self.assertEqual(said[8].replace(", in the past", ""), said[5])
 
+    def test_lines_of_c30(self):
+        image = pathlib.Path(IMAGES) / "randb.cof"
+        if not image.exists():
+            self.skipTest(f"{image} is not there")
+        said = self.debug(image, script=["break main", "continue", "next", "next", "back", "time", "stepi 50", "back-instruction 50",
+                                         "time", "break registers.c:31", "continue", "backtrace"])
+        self.assertRegex(said[2], r"in main \(randb.c:\d+\)")
+        self.assertEqual(said[5].splitlines()[0], said[3].splitlines()[0])
+        self.assertEqual(said[9], said[6])
+        self.assertIn("in init_registers", said[11])
+        self.assertRegex(said[12], r"#0 .*init_registers.*registers.c:31.*\n #1 .*in init_I2C.*\n #2 .*in main")
+        self.assertNotRegex("".join(said), "[\x01-\x08]")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -17,9 +17,22 @@ def commands_of(text):
     """Indented lines that are commands, without their remarks."""
     found = []
     for line in re.sub(r"```.*?```", "", text, flags=re.DOTALL).splitlines():
-        if re.match(r"    (puckloop|cd|python3) ", line):
+        if re.match(r"    (puckloop|cd|python3|tail) ", line):
             found.append(re.sub(r"\s{2,}# .*$", "", line[4:]) if "Ctrl-C" not in line else "")
     return [line for line in found if line]
+
+
+def bytes_of(image):
+    """Of an Intel HEX file, by address."""
+    found, high = {}, 0
+    for line in image.read_text().split():
+        record = bytes.fromhex(line[1:])
+        place, kind, content = int.from_bytes(record[1:3], "big"), record[3], record[4:-1]
+        if kind == 4:
+            high = int.from_bytes(content, "big") << 16
+        elif kind == 0:
+            found.update({high + place + i: byte for i, byte in enumerate(content)})
+    return found
 
 
 class Pages(InFolder):
@@ -73,6 +86,27 @@ class Pages(InFolder):
 
     def test_twenty_robots(self):
         self.check_page("twenty_robots.md", 3)
+
+    def test_odometry(self):
+        if subprocess.run([PROGRAM, "gap", "--help"], capture_output=True, check=False).returncode != 0:
+            self.skipTest("puckloop-gap is not built")
+        self.check_page("odometry.md", 3)
+        for name in ("report.html", "overlay.toml"):
+            self.assertTrue((self.folder / "answer" / name).is_file(), name)
+
+    def test_boot_loader(self):
+        images = pathlib.Path(os.environ.get("PUCKLOOP_IMAGES", "/nowhere"))
+        boot = images / "tinybld_ds6014A_7.37Mhz_115200uart1_8xPLL_with_LEDs.hex"
+        if not boot.exists():
+            self.skipTest("PUCKLOOP_IMAGES names no folder with the boot loader's image")
+        shutil.copy(boot, self.folder / "boot.hex")
+        shutil.copy(SOURCE / "firmware" / "epuck" / "epuck.hex", self.folder / "my_firmware.hex")
+        self.check_page("boot_loader.md", 5)
+        # What was uploaded is in the flash: all but the reset vector, which the boot loader keeps for itself.
+        kept, own = bytes_of(self.folder / "robot.hex"), bytes_of(self.folder / "my_firmware.hex")
+        program = {place: byte for place, byte in own.items() if 0x200 <= place < 0x100000}
+        self.assertGreater(len(program), 2000)
+        self.assertEqual({place: kept.get(place) for place in program}, program)
 
     def test_every_page_is_tested_and_listed(self):
         pages = {page.name for page in HOWTO.glob("*.md")} - {"README.md"}
