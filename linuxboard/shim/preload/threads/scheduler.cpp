@@ -426,7 +426,9 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
         if (received != nullptr) *received = me->received;
         after_wait(me);
         if (reason == Wake::Signal) {
-            if (take_signals()) continue;
+            // poll() is never restarted; what a handler wrote into a pipe is seen by the next one.
+            const bool ends = request.op == wire::Op::Poll && page().networked != 0;
+            if (take_signals() && !ends) continue;
             errno = EINTR;
             return -1;
         }
