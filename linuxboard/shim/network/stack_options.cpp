@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace puckloop::linuxboard {
 
@@ -99,6 +100,35 @@ int set_timeout(Time& timeout, std::string_view value) {
     return 0;
 }
 
+/// As far as there is something to say; states as the kernel numbers them.
+tcp_info info_of(const TcpConnection& tcp) {
+    using State = TcpConnection::State;
+    constexpr std::pair<State, int> kStates[] = {
+        {State::Closed, TCP_CLOSE},         {State::SynSent, TCP_SYN_SENT},
+        {State::SynReceived, TCP_SYN_RECV}, {State::Established, TCP_ESTABLISHED},
+        {State::FinWait1, TCP_FIN_WAIT1},   {State::FinWait2, TCP_FIN_WAIT2},
+        {State::CloseWait, TCP_CLOSE_WAIT}, {State::Closing, TCP_CLOSING},
+        {State::LastAck, TCP_LAST_ACK},     {State::TimeWait, TCP_TIME_WAIT}};
+    const auto microseconds = [](Time time) {
+        return static_cast<std::uint32_t>(time / cosim::kMicrosecond);
+    };
+    const TcpConnection::Figures figures = tcp.figures();
+    const std::uint32_t segment = std::max(figures.segment, 1u);
+    tcp_info info{};
+    for (const auto& [state, number] : kStates)
+        if (tcp.state() == state) info.tcpi_state = static_cast<std::uint8_t>(number);
+    info.tcpi_rto = microseconds(figures.timeout);
+    info.tcpi_rtt = microseconds(figures.round_trip);
+    info.tcpi_rttvar = microseconds(figures.variation);
+    info.tcpi_snd_mss = info.tcpi_rcv_mss = info.tcpi_advmss = figures.segment;
+    info.tcpi_pmtu = protocols::kMtu;
+    info.tcpi_snd_cwnd = figures.congestion / segment;
+    info.tcpi_snd_ssthresh = figures.threshold / segment;
+    info.tcpi_unacked = static_cast<std::uint32_t>((tcp.unacknowledged() - tcp.unsent()) / segment);
+    info.tcpi_total_retrans = static_cast<std::uint32_t>(tcp.counts().retransmitted);
+    return info;
+}
+
 timeval as_timeval(Time time) {
     return {time / cosim::kSecond, time % cosim::kSecond / cosim::kMicrosecond};
 }
@@ -185,6 +215,11 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
     if (const Number stored = number_of(options, level, name); stored.value != nullptr)
         return give(*stored.value);
     if (level == IPPROTO_TCP && name == TCP_MAXSEG) return give(static_cast<int>(TcpConnection::kSegment));
+    if (level == IPPROTO_TCP && name == TCP_INFO) return give(socket.tcp ? info_of(*socket.tcp) : tcp_info{});
+    if (level == IPPROTO_TCP && name == TCP_CONGESTION) {
+        value = std::string("reno\0", 5);
+        return 0;
+    }
     if (level != SOL_SOCKET) return ENOPROTOOPT;
     switch (name) {
     case SO_ERROR:

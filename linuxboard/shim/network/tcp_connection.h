@@ -102,6 +102,15 @@ class TcpConnection {
     /// Counts what a program that waits for it could want to know.
     std::uint32_t activity() const { return activity_; }
     const TcpCounts& counts() const { return counts_; }
+    /// Round trip, its variation, retransmission time-out; window of congestion and threshold, octets.
+    struct Figures {
+        cosim::Time round_trip = 0, variation = 0, timeout = 0;
+        std::uint32_t congestion = 0, threshold = 0, segment = 0;
+    };
+    Figures figures() const {
+        return {smoothed_,   variation_, timeout_,
+                congestion_, threshold_, static_cast<std::uint32_t>(segment_)};
+    }
 
   private:
     using Segment = protocols::TcpSegment;

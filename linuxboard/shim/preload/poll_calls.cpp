@@ -5,6 +5,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
@@ -76,7 +77,8 @@ int poll_outside(PollItem* entries, nfds_t count) {
 void name_outside_wait(const PollItem* entries, nfds_t count) {
     for (nfds_t i = 0; i < count; ++i) {
         const int fd = entries[i].fd;
-        if (fd >= 0 && open_file(fd) == nullptr && !is_internal(fd))
+        const bool waits = fd >= 0 && open_file(fd) == nullptr && !is_internal(fd);
+        if (waits && !(page().networked != 0 && is_file(fd)))  // a file is always ready
             note("the program waits on descriptor %d, which is outside of simulated time: runs may differ",
                  fd);
     }

@@ -253,7 +253,7 @@ SHIM_EXPORT int getsockopt(int fd, int level, int name, void* value, socklen_t* 
     wire::Request request = request_of(*file, wire::Op::GetOption);
     request.a = static_cast<std::uint32_t>(level);
     request.b = static_cast<std::uint32_t>(name);
-    char bytes[64] = {};
+    char bytes[256] = {};
     std::size_t size = 0;
     if (device_call(request, nullptr, 0, bytes, sizeof bytes, false, &size) < 0) return -1;
     size = std::min<std::size_t>(size, room);
