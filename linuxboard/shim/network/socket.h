@@ -55,6 +55,7 @@ struct Socket {
     bool listening = false;
     std::size_t backlog = 0;
     std::deque<int> ready{};  ///< connections to be accepted
+    bool connecting = false;  ///< connect() was called, and nobody was given its end yet
     int listener = -1;        ///< of one that is not accepted yet
     cosim::Time unreachable_at = cosim::kNever;
 };

@@ -51,7 +51,7 @@ int NetworkStack::connect(int id, Endpoint to, Time now) {
             socket.tcp.reset();  // it may try again
             break;
         default:
-            return EISCONN;
+            return std::exchange(socket.connecting, false) ? 0 : EISCONN;
         }
     }
     if (is_for_many(to.address)) return ENETUNREACH;
@@ -70,6 +70,7 @@ int NetworkStack::connect(int id, Endpoint to, Time now) {
     socket.tcp = std::make_unique<TcpConnection>(
         socket.local, to, static_cast<std::uint32_t>(random_.next() >> 32), settings_of(socket.options));
     ++counts_.connections;
+    socket.connecting = true;
     socket.tcp->connect(now);
     if (!is_own(to.address) && !known_.contains(to.address)) socket.unreachable_at = now + kAsking;
     flush(socket, now);
@@ -87,6 +88,7 @@ int NetworkStack::connecting(int id) {
     Socket& socket = at(id);
     if (!socket.tcp) return ENOTCONN;
     if (socket.tcp->state() == TcpConnection::State::SynSent) return EINPROGRESS;
+    socket.connecting = false;
     if (socket.tcp->state() != TcpConnection::State::Closed) return 0;
     const int error = take_error(socket);
     return error != 0 ? error : ECONNABORTED;
