@@ -70,6 +70,8 @@ const std::vector<std::string> kFolders = {
     "linuxboard/control",
     "linuxboard/coordinator",
     "linuxboard/record",
+    "linuxboard/netmanager",
+    "linuxboard/forward",
     "linuxboard/shim/wire",
     "linuxboard/shim/network",
     "linuxboard/shim",

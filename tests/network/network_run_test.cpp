@@ -228,6 +228,80 @@ TEST_CASE("a lossy network shows as retransmission and time, not as wrong data",
     CHECK(read.out.empty());
 }
 
+TEST_CASE("the network manager passes messages by number, as far as range and hops allow", "[network]") {
+    const Workbench bench;
+    const auto member = [&](const std::string& place, const std::string& line) {
+        return python("member.py", {place, line});
+    };
+    const auto text = [&](const Words& options) {
+        Words manager{PUCKLOOP_NETMANAGER, "--robot",     "10.0.0.11=1",
+                      "--robot",           "10.0.0.12=2", "--robot",
+                      "10.0.0.13=3",       "--log",       (bench.folder() / "manager.csv").string()};
+        manager.insert(manager.end(), options.begin(), options.end());
+        std::string all = hosts({{"manager", list_of(manager)}}, "2 s");
+        const std::vector<std::pair<std::string, std::string>> members{
+            {"0,0", "-1 from one"}, {"1,0", "3 to three"}, {"2,0", "1 to one"}};
+        for (std::size_t i = 0; i < members.size(); ++i)
+            all += fmt::format("[[host]]\nname = \"m{}\"\naddress = \"10.0.0.{}\"\nprogram = {}\n", i + 1,
+                               i + 11, member(members[i].first, members[i].second));
+        return all;
+    };
+    check_everywhere(bench, bench.file("manager.toml", text({})));
+    CHECK(log_of(bench, "o0", "m1") == "3 to one\n");
+    CHECK(log_of(bench, "o0", "m2") == "1 from one\n");
+    CHECK(log_of(bench, "o0", "m3") == "1 from one\n2 to three\n");
+    CHECK(count(text_of(bench.folder() / "manager.csv"), ",passed,") == 4 + 3);  // and who is there already hears "here"
+    const auto run = [&](const Words& options) {
+        const Ended ended = bench.run("limited", {bench.file("limited.toml", text(options)), "--in-process"});
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+    };
+    run({"--range", "1.5"});
+    CHECK(log_of(bench, "limited", "m1").empty());
+    CHECK(log_of(bench, "limited", "m3") == "2 to three\n");
+    CHECK(count(text_of(bench.folder() / "manager.csv"), ",too_far,3,1,") == 1);
+    run({"--range", "1.5", "--hops", "2", "--hop-delay", "0.05"});
+    CHECK(log_of(bench, "limited", "m1") == "3 to one\n");
+    CHECK(log_of(bench, "limited", "m3") == "2 to three\n1 from one\n");  // one hop, then two
+}
+
+TEST_CASE("a server drives a robot through puckloop-forward", "[network]") {
+    const Workbench bench;
+    const std::string text =
+        hosts({{"server", python("remote_driver.py")}}, "2 s") +
+        fmt::format("[[robot]]\nposition = [\"0 cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n"
+                    "[robot.linux]\nstart = \"100 ms\"\nprogram = {}\n",
+                    list_of({PUCKLOOP_FORWARD, "--server", "server:7700"}));
+    check_everywhere(bench, bench.file("forward.toml", text));
+    CHECK(log_of(bench, "o0", "server") == "robot 10.0.0.1\nproximity 8\ndriven\n");
+    const std::string robot = log_of(bench, "o0", "robot0");
+    INFO(robot);
+    CHECK(robot.starts_with("connected with server:7700\n"));
+    CHECK(journey(bench.csv("o0", "trajectory.csv")).length > 0.01);
+}
+
+TEST_CASE("manager and forwarder refuse wrong use in one line, with status 2", "[network]") {
+    const Workbench bench;
+    const auto check = [&](const Words& words, const std::string& what) {
+        Process process(words, bench.folder());
+        const Ended ended = process.wait(10.0);
+        INFO(ended.err);
+        CHECK(ended.status == 2);
+        CHECK(ended.error_lines() == 1);
+        CHECK(ended.err.find(what) != std::string::npos);
+    };
+    check({PUCKLOOP_NETMANAGER, "--port", "0"}, "--port: '0'");
+    check({PUCKLOOP_NETMANAGER, "--range", "far"}, "--range: 'far'");
+    check({PUCKLOOP_NETMANAGER, "--robot", "10.0.0=1"}, "is not ADDRESS=NUMBER");
+    check({PUCKLOOP_NETMANAGER, "--port", "0x1"}, "--port");
+    check({PUCKLOOP_NETMANAGER, "more"}, "'more' is not an option");
+    check({PUCKLOOP_NETMANAGER, "--log", "/nowhere/log.csv"}, "/nowhere/log.csv");
+    check({PUCKLOOP_FORWARD}, "--server HOST:PORT is missing");
+    check({PUCKLOOP_FORWARD, "--server", "server"}, "is not HOST:PORT");
+    check({PUCKLOOP_FORWARD, "--server", "a:1", "--retry", "0"}, "--retry");
+    check({PUCKLOOP_FORWARD, "--server", "a:1", "--tty", "/dev/null"}, "/dev/null");
+}
+
 TEST_CASE("a scenario whose network cannot be is one line with its place, and status 2", "[network]") {
     const Workbench bench;
     const auto check = [&](const std::string& network, const std::string& host, const Words& words) {

@@ -298,11 +298,21 @@ std::int16_t BoardKernel::tty_events() const {
     return static_cast<std::int16_t>(events);
 }
 
+/// Edge-triggered, there is something new when a byte came in or went out. Deviation: without a network it is
+/// as level-triggered.
+std::int16_t BoardKernel::tty_news(wire::PollEntry& entry) const {
+    if (entry.seen == 0 || !network_) return tty_events();
+    const wire::TtyCounters counters = tty_.counters();
+    const std::uint32_t activity = 1 + (counters.received + counters.sent) % (wire::kNeverSeen - 1);
+    const bool news = std::exchange(entry.seen, activity) != activity;
+    return news || tty_.hung_up() ? tty_events() : std::int16_t{0};
+}
+
 std::int16_t BoardKernel::events_of(wire::PollEntry& entry, Time now) {
     const auto handle = static_cast<std::size_t>(entry.handle);
     if (entry.handle < 0 || handle >= files_.size() || !files_[handle].open) return POLLNVAL;
     int events = POLLIN | POLLRDNORM | POLLOUT | POLLWRNORM;  // i2c-dev has no poll method
-    if (files_[handle].kind == DeviceKind::Tty) events = tty_events();
+    if (files_[handle].kind == DeviceKind::Tty) events = tty_news(entry);
     if (files_[handle].kind == DeviceKind::Video)
         events = camera_of(entry.handle).events(entry.handle, (entry.events & kInputEvents) != 0, now);
     if (files_[handle].kind == DeviceKind::Socket) events = socket_events(entry);

@@ -159,6 +159,7 @@ class BoardKernel {
                 std::string data = {});
     cosim::Time wake_time(const Waiting& waiting) const;
     std::int16_t tty_events() const;
+    std::int16_t tty_news(wire::PollEntry& entry) const;
     static bool asks_for_input_only(const Waiting& waiting);
     /// When the devices by themselves may end the call at the earliest; `transfers_end`: one that waits for a
     /// transfer.
