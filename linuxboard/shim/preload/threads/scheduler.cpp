@@ -232,6 +232,9 @@ void route_signal() {
     if (pending_signals == 0) return;
     Thread* taker = signal_taker();
     if (taker == nullptr || !taker->interruptible) return;
+    // Its call has ended already: what it received is not lost, and the handler runs before it returns.
+    const bool has_ended = taker->state == Thread::State::Ready && taker->wake == Wake::Device;
+    if (has_ended && page().networked != 0) return;
     if (taker->state == Thread::State::Device) withdraw(*taker);
     if (taker->state == Thread::State::Parked || taker->state == Thread::State::Ready)
         make_ready(*taker, clock_now, Wake::Signal);
