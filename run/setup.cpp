@@ -18,6 +18,7 @@
 #include "run/nodes/can_buses.h"
 #include "run/nodes/ircom_nodes.h"
 #include "run/nodes/linux_nodes.h"
+#include "run/nodes/network_nodes.h"
 #include "run/nodes/plan_kit.h"
 #include "run/nodes/radio_nodes.h"
 #include "run/nodes/tam_nodes.h"
@@ -142,6 +143,7 @@ void add_linux(RunSetup& setup, std::size_t index, const RunRequest& request) {
     const std::string program = robot.name + ".linux";
     LinuxProgram spec = linux_program(setup, program, *robot.linux_board, request);
     add_cameras(setup, index, spec);
+    join_network(setup, robot.name, spec);
     setup.nodes.push_back({program, {std::move(spec)}});
     setup.links.push_back(
         {robot.name + ".uart", {program, "uart"}, {robot.name + ".pic", "uart2"}, setup.scenario.uart_baud});
@@ -288,6 +290,7 @@ RunSetup set_up(const RunRequest& request) {
     add_tams(setup, request);
     add_radio(setup, request);
     add_bluetooth(setup, request);
+    add_network(setup, request);
     add_can_buses(setup);
     add_ircom(setup);
     name_linked_ports(setup);

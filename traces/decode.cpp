@@ -68,6 +68,8 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const Decod
             static_cast<void>(rab.add(*row, *signal) || ircom.add(*row, *signal));
         else if (const auto* radio = radio_on_air(*row))
             decode_radio(*row, *radio, take);
+        else if (const cosim::Packet* packet = sent_packet(*row))
+            decode_packet(*row, *packet, take);
         else if (const auto can = can_on_bus(*row))
             decode_can(*row, *can, take);
     }

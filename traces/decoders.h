@@ -203,6 +203,8 @@ class IrcomDecoder {
 void decode_mark(const FaultMark& mark, const TakeFrame& take);
 
 void decode_can(const cosim::TraceRow& row, const CanOnBus& seen, const TakeFrame& take);
+/// Once for each packet: where it is sent.
+void decode_packet(const cosim::TraceRow& row, const cosim::Packet& packet, const TakeFrame& take);
 void decode_radio(const cosim::TraceRow& row, const cosim::RadioFrame& frame, const TakeFrame& take);
 
 }  // namespace puckloop::tools

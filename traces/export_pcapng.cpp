@@ -1,4 +1,5 @@
-// What becomes a packet: bursts of bytes, segments of I2C transfers, radio and CAN frames.
+// What becomes a packet: bursts of bytes, segments of I2C transfers, radio and CAN frames, packets of a
+// network.
 
 #include "protocols/uart_sampling.h"
 #include "traces/can_frames.h"
@@ -213,6 +214,10 @@ struct PcapngStream::Parts {
             const auto octets = radio->octets.view();
             writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio),
                           radio->start, {octets.begin(), octets.end()}, fault_text(row.fault));
+        } else if (const cosim::Packet* packet = sent_packet(row)) {
+            const auto octets = packet->octets.view();
+            writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Ip4),
+                          packet->start, {octets.begin(), octets.end()}, fault_text(row.fault));
         } else if (const auto heard = can_on_bus(row)) {
             const bool failed = heard->error != protocols::CanError::None;
             writer.packet(writer.interface(heard->bus, LinkType::Can), heard->start, heard->socketcan(),

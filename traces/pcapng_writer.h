@@ -20,7 +20,14 @@ namespace puckloop::tools::pcapng {
 using cosim::Time;
 using Bytes = std::vector<std::uint8_t>;
 
-enum class LinkType : std::uint16_t { Radio = 195, I2c = 209, Can = 227, Uart = 250, Export = 252 };
+enum class LinkType : std::uint16_t {
+    Radio = 195,
+    I2c = 209,
+    Can = 227,
+    Ip4 = 228,
+    Uart = 250,
+    Export = 252
+};
 enum : std::uint32_t { kSection = 0x0A0D0D0A, kInterface = 1, kPacket = 6 };
 enum : std::uint16_t { kEnd = 0, kComment = 1, kName = 2, kResolution = 9 };
 

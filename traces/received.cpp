@@ -31,6 +31,10 @@ ReceivedCharacter as_sent(const cosim::UartFrame& frame) {
 
 }  // namespace
 
+const cosim::Packet* sent_packet(const cosim::TraceRow& row) {
+    return row.from.ends_with(".linux") ? std::get_if<cosim::Packet>(&row.payload) : nullptr;
+}
+
 const cosim::RadioFrame* radio_on_air(const cosim::TraceRow& row) {
     const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload);
     return radio != nullptr && radio->duration > 0 ? radio : nullptr;

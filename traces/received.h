@@ -38,6 +38,9 @@ std::optional<protocols::UartReceiver> setting_of(const cosim::TraceRow& row, co
 /// A frame that was on the air; null for other rows, and for what a module gives its medium of its settings
 /// (a frame without a duration).
 const cosim::RadioFrame* radio_on_air(const cosim::TraceRow& row);
+/// The packet that a computer hands to its network; nullptr for anything else, and where it arrives: each is
+/// there once.
+const cosim::Packet* sent_packet(const cosim::TraceRow& row);
 
 /// "break", "framing error", "wrong parity"; empty: nothing is wrong.
 std::string line_error(const protocols::ReceivedCharacter& character);

@@ -33,7 +33,7 @@ void check_known(const char* option, const std::vector<std::string>& asked,
 }  // namespace
 
 std::string_view kind_of(const cosim::TraceRow& row) {
-    constexpr std::string_view kKinds[] = {"uart", "i2c", "signal", "radio", "can"};
+    constexpr std::string_view kKinds[] = {"uart", "i2c", "signal", "radio", "can", "packet"};
     return kKinds[row.payload.index()];
 }
 

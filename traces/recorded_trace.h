@@ -26,7 +26,7 @@ struct TraceSelection {
     bool wanted(const cosim::TraceRow& row) const;
 };
 
-/// "uart", "i2c", "signal", "radio" or "can".
+/// "uart", "i2c", "signal", "radio", "can" or "packet".
 std::string_view kind_of(const cosim::TraceRow& row);
 
 class RecordedTrace {

@@ -7,7 +7,7 @@
 namespace puckloop::cosim {
 
 namespace {
-enum class PayloadTag : std::uint8_t { Uart, I2c, Signal, Radio, Can };
+enum class PayloadTag : std::uint8_t { Uart, I2c, Signal, Radio, Can, Packet };
 constexpr std::uint8_t kFirstChannel = 11, kLastChannel = 26;
 }  // namespace
 
@@ -55,6 +55,13 @@ void ByteWriter::payload(const Payload& payload) {
         u8(static_cast<std::uint8_t>(radio->dbm));
         const auto octets = radio->octets.view();
         u8(static_cast<std::uint8_t>(octets.size()));
+        bytes_.insert(bytes_.end(), octets.begin(), octets.end());
+    } else if (const auto* packet = std::get_if<Packet>(&payload)) {
+        u8(static_cast<std::uint8_t>(PayloadTag::Packet));
+        time(packet->start);
+        time(packet->duration);
+        const auto octets = packet->octets.view();
+        u16(static_cast<std::uint16_t>(octets.size()));
         bytes_.insert(bytes_.end(), octets.begin(), octets.end());
     } else {
         const auto& can = std::get<CanMessage>(payload);
@@ -112,7 +119,7 @@ std::string ByteReader::text() {
 }
 
 Payload ByteReader::payload() {
-    switch (enumerator(PayloadTag::Can)) {
+    switch (enumerator(PayloadTag::Packet)) {
     case PayloadTag::Uart: {
         UartFrame frame;
         frame.start = time();
@@ -175,6 +182,17 @@ Payload ByteReader::payload() {
         if (can.length > can.data.size() || can.flags >> kCanErrorShift > kMostCanError || can.id >= 1u << 29)
             fail("CAN message with values out of range");
         return can;
+    }
+    case PayloadTag::Packet: {
+        Packet packet;
+        packet.start = time();
+        packet.duration = time();
+        const std::size_t size = u16();
+        if (packet.duration < 0 || size < kFewestPacketOctets || size > kMostPacketOctets || size > left())
+            fail("packet with values out of range");
+        packet.octets = Octets(bytes_.subspan(position_, size));
+        position_ += size;
+        return packet;
     }
     case PayloadTag::Signal:
         break;

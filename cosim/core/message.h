@@ -135,7 +135,18 @@ inline constexpr std::uint8_t kCanSender = 8, kCanListens = 8;
 inline constexpr std::uint8_t kCanGone = 16;  ///< `tag` had been withdrawn and is not sent again
 inline constexpr int kCanErrorShift = 5, kMostCanError = 5;
 
-using Payload = std::variant<UartFrame, I2cPhase, Signal, RadioFrame, CanMessage>;
+/// An IPv4 packet (protocols/ip_packet.h). A computer hands it to its network stamped when its interface
+/// takes it; the network hands it on stamped when it arrives.
+struct Packet {
+    Time start = 0;     ///< from a computer: when it was handed over; to one: when its transmission began
+    Time duration = 0;  ///< to a computer: of that transmission
+    Octets octets;      ///< header and payload, 20 to 1500
+
+    friend bool operator==(const Packet&, const Packet&) = default;
+};
+inline constexpr std::size_t kFewestPacketOctets = 20, kMostPacketOctets = 1500;
+
+using Payload = std::variant<UartFrame, I2cPhase, Signal, RadioFrame, CanMessage, Packet>;
 // Messages are copied byte by byte in every grant: keep them small and plain.
 static_assert(std::is_trivially_copyable_v<Payload> && sizeof(Payload) == 40);
 

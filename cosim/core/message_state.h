@@ -61,17 +61,29 @@ void state(Archive& archive, CanMessage& can) {
 }
 
 template <class Archive>
+void state(Archive& archive, Packet& packet) {
+    archive(packet.start);
+    archive.bounded(packet.duration, 0, kSecond);
+    const auto view = packet.octets.view();
+    std::vector<std::uint8_t> octets(view.begin(), view.end());
+    archive(octets);
+    archive.check(octets.size() <= kMostPacketOctets, "a packet is too long");
+    if constexpr (Archive::kLoads) packet.octets = Octets(octets);
+}
+
+template <class Archive>
 void state(Archive& archive, Message& message) {
     archive.bounded(message.time, 0, kNever);
     archive(message.port);
     auto kind = static_cast<std::uint8_t>(message.payload.index());
-    archive.bounded(kind, 0, 4);
+    archive.bounded(kind, 0, 5);
     if constexpr (Archive::kLoads) {
         if (kind == 0) message.payload = UartFrame{};
         if (kind == 1) message.payload = I2cPhase{};
         if (kind == 2) message.payload = Signal{};
         if (kind == 3) message.payload = RadioFrame{};
         if (kind == 4) message.payload = CanMessage{};
+        if (kind == 5) message.payload = Packet{};
     }
     std::visit([&](auto& payload) { archive(payload); }, message.payload);
 }

@@ -13,7 +13,7 @@
 
 namespace puckloop::cosim {
 
-enum class PortKind : std::uint8_t { Uart, I2c, Signals, Radio, Can };
+enum class PortKind : std::uint8_t { Uart, I2c, Signals, Radio, Can, Network };
 
 /// A named place where a link can be attached.
 struct Port {

@@ -1,5 +1,5 @@
 #pragma once
-// The octets of a radio frame in a message, which must stay as cheap to copy as a number.
+// The octets of a radio frame or a packet in a message, which must stay as cheap to copy as a number.
 
 #include <cstdint>
 #include <span>
@@ -8,8 +8,9 @@
 namespace puckloop::cosim {
 
 /// An immutable string of octets, kept once a process for each content: copying it copies a pointer, equal
-/// contents are the same pointer. What was ever made stays until the process ends, at most what the radio
-/// carries (31 KB a second of one busy channel at 250 kbit/s). Any thread may make one.
+/// contents are the same pointer. What was ever made stays until the process ends, at most what the media
+/// carry (31 KB a second of one busy radio channel at 250 kbit/s, on a network what programs send). Any
+/// thread may make one.
 class Octets {
   public:
     Octets() = default;  ///< none

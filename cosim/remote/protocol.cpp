@@ -201,7 +201,7 @@ Ready read_ready(std::span<const std::uint8_t> body) {
     ready.ports.resize(reader.count(kSmallestPort));
     for (Port& port : ready.ports) {
         port.name = reader.text();
-        port.kind = reader.enumerator(PortKind::Can);
+        port.kind = reader.enumerator(PortKind::Network);
     }
     read_state(reader, ready.state);
     ready.has_state = reader.boolean();

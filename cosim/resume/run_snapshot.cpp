@@ -38,7 +38,8 @@ void state(Archive& archive, LinkStats& stats) {
     archive(stats.messages, stats.uart_frames, stats.uart_breaks, stats.uart_parity_errors,
             stats.uart_off_rate, stats.i2c_transactions, stats.i2c_bytes, stats.i2c_nacks, stats.i2c_bus_lost,
             stats.signals, stats.radio_frames, stats.radio_octets, stats.can_offers, stats.can_sent,
-            stats.can_received, stats.can_errors, stats.faults, stats.lost);
+            stats.can_received, stats.can_errors, stats.packets, stats.packet_octets, stats.faults,
+            stats.lost);
 }
 
 template <class Archive>

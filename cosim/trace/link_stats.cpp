@@ -63,6 +63,9 @@ void LinkStats::count(const TraceRecord& record, double nominal_baud) {
         can_sent += can->kind == CanKind::Sent;
         can_received += can->kind == CanKind::Received;
         can_errors += can->kind == CanKind::Error;
+    } else if (const auto* packet = std::get_if<Packet>(&record.payload)) {
+        ++packets;
+        packet_octets += packet->octets.size();
     } else {
         ++signals;
     }
@@ -85,6 +88,8 @@ std::string to_json(const LinkStats& s) {
     add("signals", s.signals, false);
     add("radio_frames", s.radio_frames, false);
     add("radio_octets", s.radio_octets, false);
+    add("packets", s.packets, false);
+    add("packet_octets", s.packet_octets, false);
     add("can_offers", s.can_offers, false);
     add("can_sent", s.can_sent, false);
     add("can_received", s.can_received, false);

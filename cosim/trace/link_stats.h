@@ -26,8 +26,10 @@ struct LinkStats {
     std::uint64_t can_offers = 0;    ///< frames that a controller wanted to send
     std::uint64_t can_sent = 0;      ///< reported to it, as the next two
     std::uint64_t can_received = 0, can_errors = 0;
-    std::uint64_t faults = 0;  ///< messages harmed by a fault
-    std::uint64_t lost = 0;    ///< of these, kept from arriving
+    std::uint64_t packets = 0;        ///< of a network
+    std::uint64_t packet_octets = 0;  ///< IP headers included
+    std::uint64_t faults = 0;         ///< messages harmed by a fault
+    std::uint64_t lost = 0;           ///< of these, kept from arriving
 
     void count(const TraceRecord& record, double nominal_baud);
     friend bool operator==(const LinkStats&, const LinkStats&) = default;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/trace/can_row.h"
+#include "protocols/ip_packet.h"
 #include "protocols/irda.h"
 
 #include <fmt/format.h>
@@ -157,6 +158,19 @@ void put_payload(std::string& out, const CanMessage& message) {
     out += ',';
 }
 
+void put_payload(std::string& out, const Packet& packet) {
+    out += "packet,";
+    out += hex_of(packet.octets);
+    out += ',';
+    const auto read = protocols::decode_ip(packet.octets.view());
+    out += read ? protocols::describe(*read) : "damaged";
+    out += ',';
+    put_seconds(out, packet.start);
+    out += ',';
+    put_seconds(out, packet.duration);
+    out += ',';
+}
+
 /// Reads fields, and reports where and what when one cannot be.
 class Parser {
   public:
@@ -308,17 +322,32 @@ Signal parse_signal(const Parser& in, std::string& name) {
     return signal;
 }
 
-RadioFrame parse_radio(const Parser& in) {
-    RadioFrame frame;
+Octets parse_octets(const Parser& in, std::size_t fewest, std::size_t most, std::string_view what) {
     const std::string& text = in[4];
     std::vector<std::uint8_t> octets(text.size() / 2);
-    bool good = text.size() % 2 == 0 && !octets.empty() && octets.size() <= kMostRadioOctets;
+    bool good = text.size() % 2 == 0 && octets.size() >= fewest && octets.size() <= most;
     for (std::size_t i = 0; good && i < octets.size(); ++i) {
         const char* digits = text.data() + 2 * i;
         good = std::from_chars(digits, digits + 2, octets[i], 16).ptr == digits + 2;
     }
-    if (!good) in.fail(fmt::format("\"{}\" is no radio frame", text), "1 to 127 octets, two hex digits each");
-    frame.octets = Octets(octets);
+    if (!good)
+        in.fail(fmt::format("\"{}\" is no {}", text, what),
+                fmt::format("{} to {} octets, two hex digits each", fewest, most));
+    return Octets(octets);
+}
+
+/// What the fifth column says of it follows from the octets.
+Packet parse_packet(const Parser& in) {
+    Packet packet;
+    packet.octets = parse_octets(in, kFewestPacketOctets, kMostPacketOctets, "packet");
+    packet.start = in.time(6);
+    packet.duration = in.span(7);
+    return packet;
+}
+
+RadioFrame parse_radio(const Parser& in) {
+    RadioFrame frame;
+    frame.octets = parse_octets(in, 1, kMostRadioOctets, "radio frame");
     const std::string& detail = in[5];
     const char* end = detail.data() + detail.size();
     bool shaped = detail.starts_with("ch");
@@ -394,6 +423,8 @@ void append_row(std::string& out, Time time, std::string_view sender, const Payl
         out += ",,,";
     } else if (const auto* can = std::get_if<CanMessage>(&payload)) {
         put_payload(out, *can);
+    } else if (const auto* packet = std::get_if<Packet>(&payload)) {
+        put_payload(out, *packet);
     } else {
         put_payload(out, std::get<RadioFrame>(payload));
     }
@@ -430,8 +461,11 @@ TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size
         row.payload = parse_radio(in);
     else if (in[3] == "can")
         row.payload = parse_can_message(in);
+    else if (in[3] == "packet")
+        row.payload = parse_packet(in);
     else
-        in.fail(fmt::format("\"{}\" is no kind of message", in[3]), "uart, break, i2c, signal, radio, can");
+        in.fail(fmt::format("\"{}\" is no kind of message", in[3]),
+                "uart, break, i2c, signal, radio, can, packet");
     return row;
 }
 

@@ -49,8 +49,8 @@ std::string TraceStats::text() const {
         const LinkStats& s = entry.stats;
         text += fmt::format("{:<{}}  {:<{}}  {:>9} {:>8} {:>8} {:>7} {:>8} {:>7} {:>7} {:>14.9f} {:>14.9f}\n",
                             key.first, link_width, key.second, from_width, s.messages,
-                            s.uart_frames - s.uart_breaks + s.i2c_bytes + s.radio_octets, s.uart_breaks,
-                            s.uart_parity_errors, s.i2c_transactions, s.i2c_nacks, s.faults,
+                            s.uart_frames - s.uart_breaks + s.i2c_bytes + s.radio_octets + s.packet_octets,
+                            s.uart_breaks, s.uart_parity_errors, s.i2c_transactions, s.i2c_nacks, s.faults,
                             to_seconds(entry.first), to_seconds(entry.last));
     }
     return text;

@@ -6,6 +6,7 @@
 #include "cosim/faults/node_fault.h"
 #include "emu/bluetooth/air_node.h"
 #include "emu/i2c_devices/bus_node.h"
+#include "emu/network/network_node.h"
 #include "emu/rab_board/rab_spec.h"
 #include "emu/radio/ether_node.h"
 #include "emu/tam_avr/tam_spec.h"
@@ -27,7 +28,7 @@ namespace puckloop::tools {
 
 using NodeKind = std::variant<MainBoard, rab::RabSpec, tam::TamSpec, LinuxProgram, WorldSpec, physics::IrSpec,
                               physics::IrcomSpec, i2c_devices::BusSpec, cosim::CanBusOptions, OutsideSpec,
-                              xbee::ModuleSpec, bluetooth::AirSpec, radio::EtherSpec>;
+                              xbee::ModuleSpec, bluetooth::AirSpec, radio::EtherSpec, network::NetworkSpec>;
 
 struct NodeDescription {
     NodeKind kind;

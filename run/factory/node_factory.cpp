@@ -8,6 +8,7 @@
 #include "emu/image/avr_image.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
+#include "emu/network/network_node.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
 #include "emu/radio/ether_node.h"
@@ -175,6 +176,11 @@ std::unique_ptr<cosim::Node> make(const bluetooth::AirSpec& spec, Faults /*none*
 std::unique_ptr<cosim::Node> make(radio::EtherSpec spec, Faults faults) {
     spec.faults = std::move(faults);
     return std::make_unique<radio::EtherNode>(spec);
+}
+
+std::unique_ptr<cosim::Node> make(network::NetworkSpec spec, Faults faults) {
+    spec.faults = std::move(faults);
+    return std::make_unique<network::NetworkNode>(spec);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::vector<CanController> all_controllers(const Scenario& scenario) {
 
 /// Of the nodes that a run has without CAN.
 bool is_taken(const Scenario& scenario, const std::string& name) {
-    const std::set<std::string> fixed{"world", "ir", "ircom", "ether", "bluetooth", "coordinator"};
+    const std::set<std::string> fixed{"world", "ir", "ircom", "ether", "bluetooth", "coordinator", "network"};
     const auto has = [&](const auto& list) {
         return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
     };

@@ -7,6 +7,7 @@
 #include "scenarios/reader/camera_keys.h"
 #include "scenarios/reader/image_key.h"
 #include "scenarios/reader/linux_keys.h"
+#include "scenarios/reader/network_tables.h"
 #include "scenarios/reader/world_tables.h"
 
 #include <fmt/format.h>
@@ -104,6 +105,7 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     read_program(reader, board);
     read_devices(reader, board);
     read_cameras(reader, board);
+    board.address = read_network_address(reader);
     board.place_line = table.line;
     reader.finish();
     return board;

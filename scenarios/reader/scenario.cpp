@@ -15,6 +15,7 @@
 #include "scenarios/reader/faults/fault_tables.h"
 #include "scenarios/reader/field_table.h"
 #include "scenarios/reader/mission_table.h"
+#include "scenarios/reader/network_tables.h"
 #include "scenarios/reader/radio_tables.h"
 #include "scenarios/reader/robot_tables.h"
 #include "scenarios/reader/tam_tables.h"
@@ -104,6 +105,7 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
     scenario.coordinator = read_coordinator(top);
     read_bluetooth(top, scenario);
     read_can_buses(top, scenario);
+    read_network(top, scenario);
     scenario.world.ircom = !scenario.robots.empty() && !scenario.tams.empty();
     if (const TomlValue* table = top.table("ircom")) {
         Reader ircom(name, "ircom", *table);
@@ -111,8 +113,8 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
         scenario.record_ircom = ircom.flag("record", false);
         ircom.finish();
     }
-    if (scenario.robots.empty() && scenario.tams.empty())
-        top.fail_missing("robot", "at least one [[robot]], [[group]] or [[tam]]");
+    if (scenario.robots.empty() && scenario.tams.empty() && scenario.hosts.empty())
+        top.fail_missing("robot", "at least one [[robot]], [[group]], [[tam]] or [[host]]");
     std::size_t index = 0;
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));

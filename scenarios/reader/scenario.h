@@ -107,6 +107,7 @@ struct LinuxBoard {
     std::vector<std::string> serial_devices{"/dev/ttyS0"};  ///< names of the line to the main board
     std::vector<std::string> i2c_devices{"/dev/i2c-3"};     ///< names of the robot's bus
     std::vector<LinuxCamera> cameras{};
+    std::string address{};         ///< on the network; empty: by its number
     std::int64_t save_frames = 0;  ///< every so-many-th frame of each camera is kept as a picture; 0: none
     int place_line = 0;
 };
@@ -163,6 +164,21 @@ struct TamBoard {
     XBeeModule xbee{};
 };
 
+/// The network between Linux boards and hosts.
+struct NetworkMedium {
+    std::string address = "10.0.0.0";  ///< of the network
+    int prefix = 24;                   ///< bits of it
+    double latency = 1e-4;             ///< s
+    double rate = 0.0;                 ///< bit/s; 0: packets take no time
+    std::int64_t queue = 1000;         ///< packets that a computer's interface keeps
+};
+
+/// A computer on the network that is on no robot.
+struct ComputerHost {
+    std::string name;
+    LinuxBoard board;
+};
+
 /// A CAN module of a board: "robot0.pic.can1".
 struct CanController {
     std::string board;  ///< node: "robot0.pic", "robot0.rab"
@@ -204,6 +220,8 @@ struct Scenario {
     BluetoothMedium bluetooth{};
     std::optional<CoordinatorPlace> coordinator{};
     std::vector<CanBus> can_buses{};
+    std::optional<NetworkMedium> network{};  ///< none: sockets are the host's
+    std::vector<ComputerHost> hosts{};
     std::optional<missions::Mission> mission{};
     std::optional<MissionCommand> mission_program{};  ///< in place of `mission`
     std::optional<physics::TrackerSpec> tracker{};    ///< there whenever a mission program is

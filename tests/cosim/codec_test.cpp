@@ -17,6 +17,12 @@ RadioFrame some_radio_frame() {
     return {12, 320 * kMicrosecond, Octets(octets), 26, -90};
 }
 
+Packet some_packet() {
+    Bytes octets(kMostPacketOctets, 0x45);
+    octets.back() = 0xff;
+    return {5, 1'090'909'090, Octets(octets)};
+}
+
 std::vector<Message> some_messages() {
     UartFrame frame{123456789, 8680555, 0x1a5, 9, 2, 2, 1, 0};
     I2cPhase phase{I2cPhaseKind::Data, 0xc0, 1, -5, 2500000, 7};
@@ -33,7 +39,8 @@ std::vector<Message> some_messages() {
             {2, 65535, phase},
             {kNever, 3, Signal{7, -0.25}},
             {9, 1, some_radio_frame()},
-            {9, 1, can}};
+            {9, 1, can},
+            {10, 0, some_packet()}};
 }
 
 NodeState some_state() {

@@ -397,3 +397,22 @@ TEST_CASE("rows are written as in their plain form") {
     CHECK_FALSE(std::getline(in, line));
     std::filesystem::remove(path);
 }
+
+TEST_CASE("a packet's row comes back, and says what is in it") {
+    const std::vector<std::uint8_t> datagram{0x45, 0,  0, 29, 0, 1, 0, 0, 64, 17, 0x66, 0xcd, 10, 0,  0,
+                                             1,    10, 0, 0,  2, 0, 7, 0, 9,  0,  9,    0,    0,  'x'};
+    TraceRow row{kSecond, "robot0.network", "robot0.linux",
+                 "",      FaultKind::None,  Packet{kSecond - 5, 7, Octets(datagram)}};
+    const std::string text = to_csv(row);
+    CHECK_THAT(text, Catch::Contains(",packet,4500001d") &&
+                         Catch::Contains(",UDP 10.0.0.1:7 > 10.0.0.2:9 1 octets,"));
+    CHECK(to_csv(parse_trace_row(text, "trace.csv", 2)) == text);
+    for (const char* bad : {"", "45", "4500001", "zz00001d"}) {
+        const std::string damaged =
+            "1.000000000000,robot0.network,robot0.linux,packet," + std::string(bad) + ",,0.5,0.0,,";
+        CHECK_THROWS_AS(parse_trace_row(damaged, "trace.csv", 2), InputError);
+    }
+    TraceStats stats;
+    stats.add(row);
+    CHECK_THAT(stats.json(), Catch::Contains("\"packets\": 1, \"packet_octets\": 29"));
+}

@@ -26,7 +26,7 @@ const std::map<std::string, std::size_t> kKnown = {
     {"gap/overlay", 2},             // with gap/pipeline
     {"linuxboard/coordinator", 2},  // with its experiments
     {"linuxboard/shim/devices", 2},
-    {"linuxboard/shim/preload", 4},
+    {"linuxboard/shim/preload", 5},
     {"scenarios/reader", 4},  // with compose, events and faults
 };
 

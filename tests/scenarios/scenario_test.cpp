@@ -166,7 +166,7 @@ TEST_CASE("what cannot be run is refused with its line") {
     CHECK(problem_of("[run]\nduration = \"5 s\"\n") ==
           "line 1: [arena] is missing (expected [arena] with size = [\"1 m\", \"80 cm\"])");
     CHECK(problem_of(kArena) ==
-          "line 1: 'robot' is missing (expected at least one [[robot]], [[group]] or [[tam]])");
+          "line 1: 'robot' is missing (expected at least one [[robot]], [[group]], [[tam]] or [[host]])");
     CHECK(problem_of(kArena + "[[robot]]\nposition = [\"2 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"x.hex\"\n")
               .starts_with("line 5: "));
     CHECK(problem_of(kArena + kRobot + "selecter = 3\n") ==

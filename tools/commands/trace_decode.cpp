@@ -34,10 +34,10 @@ void declare_trace_decode(Command& trace) {
         ->type_name("DIR");
     command
         ->add_option("--protocol", options->protocols,
-                     "only epuck, xbee, bluetooth, bytes, i2c, rab, ircom, mesh or fault (repeatable)")
+                     "only epuck, xbee, bluetooth, bytes, i2c, rab, ircom, mesh, ip or fault (repeatable)")
         ->allow_extra_args(false)
-        ->check(
-            one_of({"epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "rab", "ircom", "mesh", "fault"}));
+        ->check(one_of(
+            {"epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "rab", "ircom", "mesh", "ip", "fault"}));
     command->add_flag("--errors", options->errors_only, "only frames with something wrong");
     command->add_flag("--json", options->json, "one JSON object per line");
     add_selection(*command, options->selection);

@@ -64,7 +64,7 @@ void add_selection(Command& command, TraceSelection& selection) {
         ->allow_extra_args(false);
     command.add_option("--kind", selection.kinds, "only these kinds (repeatable)")
         ->allow_extra_args(false)
-        ->check(one_of({"uart", "i2c", "signal", "radio", "can"}));
+        ->check(one_of({"uart", "i2c", "signal", "radio", "can", "packet"}));
     command.add_option("--from", selection.from_s, "first time, s")
         ->check(seconds_between(0.0, kLatestExported));
     command.add_option("--to", selection.until_s, "end time, s; not included")

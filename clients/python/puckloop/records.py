@@ -13,7 +13,7 @@ class Frame:
     time_ps: int  #: of delivery, picoseconds of simulated time
     link: str
     sender: str  #: node
-    kind: str  #: "uart", "i2c", "signal", "radio", "break", ...
+    kind: str  #: "uart", "i2c", "signal", "radio", "packet", "break", ...
     value: str  #: hexadecimal of bytes, a number of a signal
     detail: str
     fault: str  #: what a fault did to it; empty: nothing

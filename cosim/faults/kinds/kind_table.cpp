@@ -43,7 +43,7 @@ bool in_range(const ParameterInfo& parameter, double value) {
 bool carries_out_by_window(PlaceKind place) {
     return place == PlaceKind::Pic || place == PlaceKind::Rab || place == PlaceKind::Tam ||
            place == PlaceKind::InfraRed || place == PlaceKind::Linux || place == PlaceKind::Xbee ||
-           place == PlaceKind::Can;
+           place == PlaceKind::Can || place == PlaceKind::Network;
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ const std::vector<KindInfo>& all_kinds() {
     static const std::vector<KindInfo> kinds = [] {
         std::vector<KindInfo> all;
         for (auto family : {uart_kinds, radio_kinds, xbee_kinds, ircom_kinds, i2c_kinds, can_kinds,
-                            linux_kinds, board_kinds, infrared_kinds}) {
+                            linux_kinds, board_kinds, infrared_kinds, network_kinds}) {
             std::vector<KindInfo> some = family();
             std::move(some.begin(), some.end(), std::back_inserter(all));
         }
@@ -126,7 +126,8 @@ void check_fault(const FaultSpec& spec, const KindInfo& kind) {
     for (const auto& [key, value] : spec.parameters.texts)
         if (!belongs(key)) refuse(fmt::format("{} has no {}", kind.name, key), "one of its own parameters");
     if (kind.place == PlaceKind::Uart) check_uart_fault(spec, kind);
-    if (kind.place == PlaceKind::Radio && spec.parameters.number("jitter") > spec.parameters.number("delay"))
+    const bool delays_frames = kind.place == PlaceKind::Radio || kind.place == PlaceKind::Network;
+    if (delays_frames && spec.parameters.number("jitter") > spec.parameters.number("delay"))
         refuse("the jitter is larger than the delay", "frames that are not early");
     if (kind.place == PlaceKind::Ircom && kind.name == "flip") {
         constexpr double kBits = 10;

@@ -15,7 +15,20 @@
 namespace puckloop::cosim {
 
 /// What a fault sits on. Radio: a module's way to the air; Xbee: the air between modules.
-enum class PlaceKind : std::uint8_t { Uart, Radio, I2c, InfraRed, Pic, Rab, Tam, Linux, Xbee, Ircom, Can };
+enum class PlaceKind : std::uint8_t {
+    Uart,
+    Radio,
+    I2c,
+    InfraRed,
+    Pic,
+    Rab,
+    Tam,
+    Linux,
+    Xbee,
+    Ircom,
+    Can,
+    Network
+};
 
 enum class Unit : std::uint8_t {
     Time,
@@ -76,6 +89,7 @@ std::vector<KindInfo> xbee_kinds();
 std::vector<KindInfo> ircom_kinds();
 std::vector<KindInfo> linux_kinds();
 std::vector<KindInfo> board_kinds();
+std::vector<KindInfo> network_kinds();
 std::vector<KindInfo> infrared_kinds();
 /// Throws InputError, without a place.
 void check_board_fault(const FaultSpec& spec, const KindInfo& kind);

@@ -40,7 +40,7 @@ DeviceKind kind_for(Op op) {
     case Op::VideoRead:
         return DeviceKind::Video;
     default:
-        return DeviceKind::Tty;
+        return op >= Op::Socket ? DeviceKind::Socket : DeviceKind::Tty;
     }
 }
 
@@ -70,7 +70,9 @@ BoardKernel::BoardKernel(const LinuxSpec& spec, LinuxFaults& faults)
       adapter_(std::llround(static_cast<double>(cosim::kSecond) / spec.i2c_hertz), spec.i2c_nack_error,
                spec.i2c_hold),
       has_tty_(!spec.tty.empty()),
-      i2c_files_(spec.i2c.size()) {}
+      i2c_files_(spec.i2c.size()) {
+    if (spec.network) network_.emplace(*spec.network, RandomStream(spec.seed, "linux.network." + spec.name));
+}
 
 void BoardKernel::finish(std::uint32_t thread, std::int64_t result, int error, Time time, std::string data) {
     FinishedCall call;
@@ -102,13 +104,23 @@ void BoardKernel::open_file(const Request& request) {
         finish(request.thread, -1, ENODEV, request.now);
         return;
     }
+    const int handle = place_file(file);
+    if (file.kind == DeviceKind::Video) cameras_[file.camera]->open(handle);
+    finish_open(request.thread, handle, request.now);
+}
+
+int BoardKernel::place_file(const File& file) {
     std::size_t handle = 0;
     while (handle < files_.size() && files_[handle].open)
         ++handle;
     if (handle == files_.size()) files_.emplace_back();
     files_[handle] = file;
-    if (file.kind == DeviceKind::Video) cameras_[file.camera]->open(static_cast<int>(handle));
-    finish(request.thread, static_cast<std::int64_t>(handle), 0, request.now);
+    return static_cast<int>(handle);
+}
+
+void BoardKernel::finish_open(std::uint32_t thread, int handle, Time time, std::string data) {
+    finish(thread, handle, 0, time, std::move(data));
+    finished_.back().opens = true;
 }
 
 void BoardKernel::call(const Request& request, std::string_view data) {
@@ -116,6 +128,9 @@ void BoardKernel::call(const Request& request, std::string_view data) {
     switch (request.op) {
     case Op::Open:
         open_file(request);
+        return;
+    case Op::Socket:
+        open_socket(request);
         return;
     case Op::Cancel: {
         waiting_.erase(request.thread);
@@ -158,7 +173,7 @@ void BoardKernel::call(const Request& request, std::string_view data) {
     }
     if (!attempt(request.thread, waiting, now)) {
         waiting_.insert_or_assign(request.thread, std::move(waiting));
-    } else if (request.op == Op::Ioctl || request.op == Op::Close) {
+    } else if (request.op == Op::Ioctl || request.op == Op::Close || is_socket_call(request.op)) {
         attempt_all(now);  // a stream's end ends the calls that wait for its frames
     }
 }
@@ -169,9 +184,10 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
         finish(thread, result, error, now, std::move(data));
         return true;
     };
+    if (is_socket_call(request.op)) return attempt_socket(thread, waiting, now);
     switch (request.op) {
     case Op::Close:
-        release(request.handle);
+        release(request.handle, now);
         return done(0);
     case Op::Read:
         return attempt_read(thread, waiting, now);
@@ -282,13 +298,24 @@ std::int16_t BoardKernel::tty_events() const {
     return static_cast<std::int16_t>(events);
 }
 
-std::int16_t BoardKernel::events_of(const wire::PollEntry& entry, Time now) {
+/// Edge-triggered, there is something new when a byte came in or went out. Deviation: without a network it is
+/// as level-triggered.
+std::int16_t BoardKernel::tty_news(wire::PollEntry& entry) const {
+    if (entry.seen == 0 || !network_) return tty_events();
+    const wire::TtyCounters counters = tty_.counters();
+    const std::uint32_t activity = 1 + (counters.received + counters.sent) % (wire::kNeverSeen - 1);
+    const bool news = std::exchange(entry.seen, activity) != activity;
+    return news || tty_.hung_up() ? tty_events() : std::int16_t{0};
+}
+
+std::int16_t BoardKernel::events_of(wire::PollEntry& entry, Time now) {
     const auto handle = static_cast<std::size_t>(entry.handle);
     if (entry.handle < 0 || handle >= files_.size() || !files_[handle].open) return POLLNVAL;
     int events = POLLIN | POLLRDNORM | POLLOUT | POLLWRNORM;  // i2c-dev has no poll method
-    if (files_[handle].kind == DeviceKind::Tty) events = tty_events();
+    if (files_[handle].kind == DeviceKind::Tty) events = tty_news(entry);
     if (files_[handle].kind == DeviceKind::Video)
         events = camera_of(entry.handle).events(entry.handle, (entry.events & kInputEvents) != 0, now);
+    if (files_[handle].kind == DeviceKind::Socket) events = socket_events(entry);
     return static_cast<std::int16_t>(events & (entry.events | POLLHUP | POLLERR));
 }
 
@@ -346,6 +373,7 @@ bool BoardKernel::suffers(Waiting& waiting, Time now) {
 }
 
 Time BoardKernel::wake_time(const Waiting& waiting) const {
+    if (is_socket_call(waiting.request.op)) return socket_wake_time(waiting);
     switch (waiting.request.op) {
     case Op::Poll:
         return waiting.request.deadline;
@@ -367,7 +395,7 @@ Time BoardKernel::wake_time(const Waiting& waiting) const {
 }
 
 Time BoardKernel::next_event() const {
-    Time next = std::min({tty_.next_event(), adapter_.next_event(), next_frame()});
+    Time next = std::min({tty_.next_event(), adapter_.next_event(), next_frame(), next_network()});
     if (resumes_ < kNever) return std::min(next, resumes_);
     for (const auto& [thread, waiting] : waiting_)
         next = std::min(next, wake_time(waiting));
@@ -397,6 +425,7 @@ Time BoardKernel::next_wake(std::span<const cosim::Message> next) const {
 
 Time BoardKernel::device_completion(const Waiting& waiting, Time transfers_end) const {
     const Time next = wake_time(waiting);
+    if (is_socket_call(waiting.request.op)) return std::min(next, next_network());
     switch (waiting.request.op) {
     case Op::Read:
         return std::min(next, tty_.next_input());
@@ -406,8 +435,8 @@ Time BoardKernel::device_completion(const Waiting& waiting, Time transfers_end) 
     case Op::VideoRead:
         return std::min(next, next_frame());
     default:  // what goes out may end it as well
-        return std::min(
-            {next, asks_for_input_only(waiting) ? tty_.next_input() : tty_.next_event(), next_frame()});
+        return std::min({next, asks_for_input_only(waiting) ? tty_.next_input() : tty_.next_event(),
+                         next_frame(), next_network()});
     }
 }
 
@@ -431,6 +460,7 @@ void BoardKernel::advance(Time now) {
     adapter_.advance(now, phases_);
     for (const auto& camera : cameras_)
         camera->advance(now);
+    if (network_) network_->advance(now);
     for (I2cResult& result : adapter_.take_results()) {
         if (waiting_.erase(result.owner) == 0) continue;
         finish(result.owner, result.messages, result.error, result.time, std::move(result.data));
@@ -468,15 +498,27 @@ void BoardKernel::share(int handle) {
     ++files_[static_cast<std::size_t>(handle)].references;
 }
 
-void BoardKernel::release(int handle) {
+void BoardKernel::release(int handle, Time now) {
     File& file = files_[static_cast<std::size_t>(handle)];
     if (!file.open || --file.references > 0) return;
     if (file.kind == DeviceKind::Tty) tty_.close();
     if (file.kind == DeviceKind::Video) camera_of(handle).close(handle);
+    if (file.kind == DeviceKind::Socket) {
+        // Deviation: a thread that still waits on it is not left to wait for ever.
+        for (auto it = waiting_.begin(); it != waiting_.end();) {
+            if (!is_socket_call(it->second.request.op) || it->second.request.handle != handle) {
+                ++it;
+                continue;
+            }
+            finish(it->first, -1, EBADF, now);
+            it = waiting_.erase(it);
+        }
+        network_->close(file.socket, now);
+    }
     file.open = false;
 }
 
-void BoardKernel::reset() {
+void BoardKernel::reset(Time now) {
     for (std::size_t handle = 0; handle < files_.size(); ++handle) {
         const File& file = files_[handle];
         if (file.open && file.kind == DeviceKind::Tty) tty_.close();
@@ -484,6 +526,7 @@ void BoardKernel::reset() {
             cameras_[file.camera]->close(static_cast<int>(handle));
     }
     files_.clear();
+    if (network_) network_->close_all(now);
     for (const auto& [thread, waiting] : waiting_)
         adapter_.abandon(thread);
     waiting_.clear();

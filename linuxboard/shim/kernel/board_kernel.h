@@ -9,6 +9,7 @@
 #include "linuxboard/shim/devices/video_device.h"
 #include "linuxboard/shim/kernel/linux_faults.h"
 #include "linuxboard/shim/kernel/spec.h"
+#include "linuxboard/shim/network/network_stack.h"
 #include "linuxboard/shim/wire/wire.h"
 
 #include <map>
@@ -23,9 +24,9 @@ namespace puckloop::linuxboard {
 
 /// A call that has ended, of the thread thread_of(slot, number).
 struct FinishedCall {
-
     wire::Completion header;
     std::string data;
+    bool opens = false;  ///< its result is the handle of a file that it opened
 };
 
 /// A thread of a process, for BoardKernel.
@@ -50,6 +51,7 @@ class BoardKernel {
     void call(const wire::Request& request, std::string_view data);
     void deliver_uart(const cosim::UartFrame& frame, cosim::Time now);
     void deliver_i2c(const cosim::I2cPhase& phase, cosim::Time now);
+    void deliver_packet(const cosim::Packet& packet, cosim::Time now);
     void hang_up(cosim::Time now);
     /// Nobody runs until `until`, so that no call ends before; transfers on the bus go on.
     void hold_calls(cosim::Time until) { resumes_ = until; }
@@ -86,9 +88,9 @@ class BoardKernel {
     /// One more process has the open file `handle`.
     void share(int handle);
     /// One process less has it; the last one closes the device.
-    void release(int handle);
+    void release(int handle, cosim::Time now);
     /// All processes are gone: calls are forgotten, files closed. What was written still goes out.
-    void reset();
+    void reset(cosim::Time now);
 
     std::vector<FinishedCall> take_finished();
     bool has_finished() const { return !finished_.empty(); }
@@ -100,14 +102,19 @@ class BoardKernel {
     /// What the devices put on the wires since the last call, in order of time.
     std::vector<cosim::UartFrame> take_frames();
     std::vector<cosim::I2cPhase> take_phases();
+    std::vector<PacketOut> take_packets();
+    /// The board's network, or nullptr.
+    const NetworkStack* network() const { return network_ ? &*network_ : nullptr; }
     bool tty_was_opened() const { return tty_opened_; }
     bool camera_was_opened() const { return camera_opened_; }
     bool i2c_was_opened() const { return i2c_opened_; }
+    bool network_was_used() const { return network_ && network_->was_used(); }
 
   private:
     struct File {
         wire::DeviceKind kind = wire::DeviceKind::None;
         std::size_t camera = 0;
+        int socket = -1;
         bool open = false;
         int references = 1;
     };
@@ -125,9 +132,24 @@ class BoardKernel {
     bool attempt_write(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     bool attempt_poll(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     bool attempt_video(std::uint32_t thread, Waiting& waiting, cosim::Time now);
-    std::int16_t events_of(const wire::PollEntry& entry, cosim::Time now);
+    std::int16_t events_of(wire::PollEntry& entry, cosim::Time now);
     VideoDevice& camera_of(int handle) { return *cameras_[files_[static_cast<std::size_t>(handle)].camera]; }
     cosim::Time next_frame() const;
+
+    // board_kernel_sockets.cpp
+    static bool is_socket_call(wire::Op op);
+    void open_socket(const wire::Request& request);
+    int new_socket_file(int socket);
+    bool attempt_socket(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    bool attempt_receive(std::uint32_t thread, Waiting& waiting, cosim::Time now, bool late);
+    std::int16_t socket_events(wire::PollEntry& entry) const;
+    cosim::Time socket_wake_time(const Waiting& waiting) const;
+    int socket_of(int handle) const { return files_[static_cast<std::size_t>(handle)].socket; }
+    cosim::Time next_network() const { return network_ ? network_->next_event() : cosim::kNever; }
+
+    /// A place for an open file: its handle.
+    int place_file(const File& file);
+    void finish_open(std::uint32_t thread, int handle, cosim::Time time, std::string data = {});
     void attempt_all(cosim::Time now);
     /// True if the call ended by a fault; may shorten it.
     bool suffers(Waiting& waiting, cosim::Time now);
@@ -137,6 +159,7 @@ class BoardKernel {
                 std::string data = {});
     cosim::Time wake_time(const Waiting& waiting) const;
     std::int16_t tty_events() const;
+    std::int16_t tty_news(wire::PollEntry& entry) const;
     static bool asks_for_input_only(const Waiting& waiting);
     /// When the devices by themselves may end the call at the earliest; `transfers_end`: one that waits for a
     /// transfer.
@@ -146,6 +169,7 @@ class BoardKernel {
     TtyPort tty_;
     I2cAdapter adapter_;
     std::vector<std::unique_ptr<VideoDevice>> cameras_;
+    std::optional<NetworkStack> network_;
     std::vector<File> files_;
     std::map<std::uint32_t, Waiting> waiting_;
     std::vector<FinishedCall> finished_;

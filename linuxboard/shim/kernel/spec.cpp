@@ -147,6 +147,11 @@ void check(const LinuxSpec& spec) {
     if (spec.tty.empty() && !spec.tty_aliases.empty()) refuse("tty_aliases", "there is no serial port");
     if (1 + spec.tty_aliases.size() + spec.i2c.size() + spec.cameras.size() > wire::kMaximumDevices)
         refuse("", "too many names of devices");
+    if (!spec.network) return;
+    place_of(*spec.network);
+    if (spec.network->names.size() > wire::kMaximumHosts) refuse("network", "has too many names");
+    for (const NetworkName& one : spec.network->names)
+        if (one.name.size() >= sizeof wire::HostEntry::name) refuse("network", "has a name that is too long");
 }
 
 std::int64_t clock_error_of(const LinuxSpec& spec) {

@@ -7,6 +7,7 @@
 #include "cosim/core/time.h"
 #include "cosim/faults/fault_json.h"
 #include "linuxboard/shim/devices/tty_port.h"
+#include "linuxboard/shim/network/network_spec.h"
 #include "linuxboard/shim/wire/wire.h"
 
 #include <csignal>
@@ -104,6 +105,7 @@ struct LinuxSpec {
     int fifo_trigger = TtyPort::kTrigger;
     std::vector<std::string> i2c{"/dev/i2c-3"};
     std::vector<CameraSpec> cameras;
+    std::optional<NetworkSpec> network;
     double i2c_hertz = 100'000.0;
     int i2c_nack_error = 121;  // EREMOTEIO
     double clock_ppm = 0.0;
@@ -146,6 +148,7 @@ struct LinuxSpec {
             field("fifo_trigger", &S::fifo_trigger, "of the UART's receive FIFO").within(1, 64),
             field("i2c", &S::i2c, "names of the one adapter at the port i2c"),
             field("cameras", &S::cameras, "in the order of the node's scenery"),
+            field("network", &S::network, "that the port network is on; none: sockets are the host's"),
             field("i2c_hertz", &S::i2c_hertz, "clock of the adapter").in("Hz").above(0),
             field("i2c_nack_error", &S::i2c_nack_error, "errno where no slave acknowledges")
                 .as<I2cErrorForm>(),

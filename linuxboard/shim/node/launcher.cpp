@@ -215,6 +215,15 @@ void Launcher::prepare_page() {
         page_->devices[index - 1].device = 0;
     }
     if (!spec_.cameras.empty()) map_video();
+    if (!spec_.network) return;
+    page_->networked = 1;
+    page_->network_prefix = static_cast<std::uint8_t>(spec_.network->prefix);
+    page_->network_address = place_of(*spec_.network).address;
+    for (const NetworkName& one : spec_.network->names) {
+        wire::HostEntry& host = page_->hosts[page_->host_count++];
+        host.address = protocols::address_of(one.address).value_or(0);
+        std::strncpy(host.name, one.name.c_str(), sizeof host.name - 1);
+    }
 }
 
 void Launcher::map_video() {

@@ -43,6 +43,10 @@ LinuxNode::LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery)
         kernel_.add_camera(std::make_unique<VideoDevice>(spec_.cameras[i], i,
                                                          cosim::from_seconds(spec_.uptime_s), *scenery_,
                                                          launcher_->video_memory(i), clock_error_of(spec_)));
+    if (spec_.network) {
+        network_port_ = static_cast<cosim::PortIndex>(ports_.size());
+        ports_.push_back({"network", cosim::PortKind::Network});
+    }
     if (can_foresee()) speculation_.emplace(*this);
     if (spec_.start == 0) {
         start_program();
@@ -92,6 +96,8 @@ void LinuxNode::collect(std::vector<Message>& outbox) {
         outbox.push_back({protocols::stop_bit_start(frame), kUartPort, frame});
     for (const cosim::I2cPhase& phase : kernel_.take_phases())
         outbox.push_back({phase.start, kI2cPort, phase});
+    for (const PacketOut& packet : kernel_.take_packets())
+        outbox.push_back({packet.time, *network_port_, cosim::Packet{packet.time, 0, packet.octets}});
 }
 
 void LinuxNode::run_devices(Time now) {
@@ -108,6 +114,8 @@ void LinuxNode::run_devices(Time now) {
             kernel_.deliver_uart(*frame, message.time);
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
             kernel_.deliver_i2c(*phase, message.time);
+        } else if (const auto* packet = std::get_if<cosim::Packet>(&message.payload)) {
+            kernel_.deliver_packet(*packet, message.time);
         } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
             if (scenery_) scenery_->change(signal->id, signal->value);
         }
@@ -136,7 +144,7 @@ void LinuxNode::run_scheduled(Time now) {
         signal_all(spec_.signals[next_signal_++].signal, now);
     if (next_restart_ < spec_.restarts.size() && spec_.restarts[next_restart_].time <= now) {
         const Restart& restart = spec_.restarts[next_restart_++];
-        kill_all();
+        kill_all(now);
         start_at_ = restart.time + restart.down;
     }
     if (end_signal_at_ <= now) send_end_signal(now);
@@ -162,8 +170,14 @@ Time LinuxNode::next_action() const {
 }
 
 Time LinuxNode::earliest_output(cosim::PortIndex port) const {
-    if (port == kCameraPort) return kNever;
+    const bool network = port == network_port_;
+    if (port >= kCameraPort && !network) return kNever;
     const Time action = std::max(next_action(), until_);
+    if (network) {
+        // The end of a process may have left some that are still to be collected.
+        if (kernel_.network()->has_packets()) return until_;
+        return std::min(action, std::max(kernel_.network()->next_event(), until_));
+    }
     if (port == kUartPort) {
         Time own = kernel_.tty().next_frame(until_);
         if (kernel_.tty().echoes()) own = std::min(own, std::max(kernel_.tty().next_event(), until_));
@@ -173,7 +187,8 @@ Time LinuxNode::earliest_output(cosim::PortIndex port) const {
 }
 
 Time LinuxNode::lookahead(cosim::PortIndex port) const {
-    if (port == kCameraPort) return kNever;
+    if (port == network_port_) return 0;  // the kernel answers by itself
+    if (port >= kCameraPort) return kNever;
     // Only a thread that waits on a device can be woken by a message, and not before the earliest time while
     // the program stands at a request.
     const bool waits = std::any_of(clients_.begin(), clients_.end(), [](const auto& client) {

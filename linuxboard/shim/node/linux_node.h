@@ -1,6 +1,7 @@
 #pragma once
 // A Linux program as a node: port `uart` is its serial port, port `i2c` its I2C adapter; port `camera`, if
-// the board has cameras, brings the signals that say what they see (Scenery).
+// the board has cameras, brings the signals that say what they see (Scenery); port `network`, if it is on
+// one, its packets.
 //
 // The program runs on its own only between two requests, and then only up to the limit of the last reply;
 // what it may see is fixed by the simulated time of each request, so its behaviour does not depend on how
@@ -33,7 +34,7 @@ namespace puckloop::linuxboard {
 
 inline constexpr cosim::PortIndex kUartPort = 0;
 inline constexpr cosim::PortIndex kI2cPort = 1;
-inline constexpr cosim::PortIndex kCameraPort = 2;
+inline constexpr cosim::PortIndex kCameraPort = 2;  // where there are cameras
 
 class LinuxNode : public cosim::Node, public cosim::Suspendable {
   public:
@@ -166,7 +167,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void signal_all(int signal, cosim::Time now);
     void changed(const Client* by, cosim::Time now);
     void client_ended(Client& client, cosim::Time now);
-    void kill_all();
+    void kill_all(cosim::Time now);
 
     // linux_node_end.cpp: how it ends
     void program_ended(cosim::Time now);
@@ -178,6 +179,8 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void out_of_grace(cosim::Time now);
     void send_end_signal(cosim::Time now);
     void signalled_ended(cosim::Time now);
+    bool used_a_device() const;
+    bool has_no_devices() const;
     void note_devices();
     void warn(std::string line);
     std::string last_words() const;
@@ -186,12 +189,14 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     LinuxSpec spec_;
     LinuxFaults faults_;
     std::vector<cosim::Port> ports_;
+    std::optional<cosim::PortIndex> network_port_;
     std::unique_ptr<Launcher> launcher_;
     std::unique_ptr<Scenery> scenery_;
     BoardKernel kernel_;
     std::vector<std::unique_ptr<Client>> clients_;  ///< by age
     std::int32_t last_number_ = 0;
     cosim::Time until_ = 0;
+    cosim::Time begun_ = 0;  ///< of the time that is granted
     std::optional<Speculation> speculation_;
     std::optional<cosim::Time> waking_at_;  ///< instant of the last step: its processes are being woken
     cosim::Time start_at_ = cosim::kNever;

@@ -72,12 +72,12 @@ std::string LinuxNode::with_first_killed(std::string how) const {
 }
 
 void LinuxNode::program_ended(Time now) {
-    kernel_.reset();
+    kernel_.reset(std::max(now, begun_));
     if (end_signal_ != 0) return ended_winding_up(now);
     const bool comes_back = next_restart_ < spec_.restarts.size() || faults_.restarts_after(now);
     std::string reason = fmt::format("{} {}", spec_.program, end_);
     if (first_gone_at_) reason += fmt::format(", noticed at {:.6f} s", cosim::to_seconds(*first_gone_at_));
-    const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened() || kernel_.camera_was_opened();
+    const bool opened = has_no_devices() || used_a_device();
     if (!opened) {
         reason += spec_.tty.empty() ? " without opening its I2C bus"
                                     : fmt::format(" without ever opening {}", spec_.tty);
@@ -92,7 +92,7 @@ void LinuxNode::program_ended(Time now) {
     } else if (spec_.exit_ends_run || !ended_well_) {
         const bool well = ended_well_ && opened;
         end_run(now, well, reason, well ? spec_.programs : 1);
-    } else {
+    } else if (!has_no_devices()) {
         warn(reason + at);
     }
 }
@@ -103,9 +103,20 @@ std::string LinuxNode::last_words() const {
     return line.empty() ? "it printed nothing" : line;
 }
 
+bool LinuxNode::used_a_device() const {
+    return kernel_.tty_was_opened() || kernel_.i2c_was_opened() || kernel_.camera_was_opened() ||
+           kernel_.network_was_used();
+}
+
+/// A computer on the network: nothing is missed if its program opens none.
+bool LinuxNode::has_no_devices() const {
+    return spec_.tty.empty() && spec_.i2c.empty() && spec_.cameras.empty() && spec_.network.has_value();
+}
+
 void LinuxNode::note_devices() {
-    never_opened_ = !kernel_.tty_was_opened() && !kernel_.i2c_was_opened() && !kernel_.camera_was_opened();
-    if (!kernel_.tty_was_opened() && !kernel_.camera_was_opened() && !spec_.tty.empty())
+    never_opened_ = !used_a_device() && !has_no_devices();
+    if (!kernel_.tty_was_opened() && !kernel_.camera_was_opened() && !kernel_.network_was_used() &&
+        !spec_.tty.empty())
         warn(fmt::format("{} never opened {}", spec_.program, spec_.tty));
 }
 
@@ -120,7 +131,7 @@ void LinuxNode::wind_up(Time now, int signal) {
         return client->process->dies_of(end_signal_);
     });
     if (die) {
-        kill_all();
+        kill_all(now);
         end_ = with_first_killed("was ended with the run");
         return;
     }
@@ -160,7 +171,7 @@ void LinuxNode::ended_winding_up(Time now) {
 void LinuxNode::out_of_grace(Time now) {
     kill_at_ = end_signal_at_ = kNever;
     wound_up_ = now;
-    kill_all();
+    kill_all(now);
     end_ = with_first_killed(fmt::format("was killed: it had not ended {:g} s after {}",
                                          cosim::to_seconds(spec_.grace), signal_name(end_signal_)));
     warn(fmt::format("{} {}", spec_.program, end_));
@@ -172,7 +183,7 @@ std::string LinuxNode::finish() {
     if (!clients_.empty()) {
         note_devices();
         end_ = with_first_killed("was ended with the run");
-        kill_all();
+        kill_all(until_);
     }
     const wire::TtyCounters tty = kernel_.tty().counters();
     nlohmann::ordered_json report = {
@@ -204,6 +215,8 @@ std::string LinuxNode::finish() {
         for (std::string& line : camera->take_unknown())
             warn(std::move(line));
     }
+    if (const NetworkStack* network = kernel_.network())
+        report["network"] = nlohmann::ordered_json::parse(network->report());
     report["warnings"] = warnings_;
     if (!faults_.empty()) report["faults"] = cosim::fault_results(faults_.carried(), until_);
     return report.dump();

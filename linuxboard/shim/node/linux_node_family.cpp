@@ -58,8 +58,8 @@ void LinuxNode::deal_out() {
     for (FinishedCall& call : kernel_.take_finished()) {
         Client* client = client_at(slot_of(call.header.thread));
         if (client == nullptr) continue;
-        const bool opened = client->request.op == Op::Open && client->request.thread == call.header.thread;
-        if (opened && call.header.error == 0) client->handles.insert(static_cast<int>(call.header.result));
+        if (call.opens && call.header.error == 0)
+            client->handles.insert(static_cast<int>(call.header.result));
         client->finished.push_back(std::move(call));
     }
 }
@@ -225,7 +225,7 @@ void LinuxNode::client_ended(Client& client, Time now) {
     client.process->kill();
     kernel_.forget(slot);
     for (const int handle : client.handles)
-        kernel_.release(handle);
+        kernel_.release(handle, std::max(now, begun_));
     ProcessEntry& ended = entry(slot);
     ended.status = client.process->wait_status();
     ended.state = ProcessEntry::Ended;
@@ -254,11 +254,11 @@ void LinuxNode::client_ended(Client& client, Time now) {
     if (clients_.empty()) program_ended(now);
 }
 
-void LinuxNode::kill_all() {
+void LinuxNode::kill_all(Time now) {
     for (const auto& client : clients_)
         client->process->kill();
     clients_.clear();
-    kernel_.reset();
+    kernel_.reset(now);
 }
 
 }  // namespace puckloop::linuxboard

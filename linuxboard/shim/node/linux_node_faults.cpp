@@ -30,7 +30,7 @@ void LinuxNode::apply_faults(Time now) {
     }
     if (damage.hung_up) kernel_.hang_up(now);
     if (!damage.killed) return;
-    kill_all();
+    kill_all(now);
     paused_until_ = 0;
     end_ = "was killed by a fault";
     if (damage.restarted_at) {

@@ -12,9 +12,9 @@ namespace puckloop::linuxboard {
 using cosim::Message;
 using cosim::Time;
 
-/// What faults and cameras have done is not taken back; in real time the wall clock is not.
+/// What faults, cameras and a network have done is not taken back; in real time the wall clock is not.
 bool LinuxNode::can_foresee() const {
-    return faults_.empty() && spec_.cameras.empty() && !spec_.real_time;
+    return faults_.empty() && spec_.cameras.empty() && !spec_.network && !spec_.real_time;
 }
 
 void LinuxNode::must_be_final() const {

@@ -33,7 +33,7 @@ bool LinuxNode::begin(Time until, std::span<const Message> inbox, std::vector<Me
     inbox_next_ = 0;
     inbox_.insert(inbox_.end(), inbox.begin(), inbox.end());
     look_at_first(until_);
-    until_ = until;
+    begun_ = std::exchange(until_, until);
     waking_at_.reset();
     outbox_ = &outbox;
     return resume(false);
@@ -156,7 +156,7 @@ bool LinuxNode::listen(Client& client, bool wait) {
         const std::string reason =
             fmt::format("{} has not let time pass for {:g} s of wall clock (half of --stall): {}",
                         spec_.program, spec_.watchdog_s, client.process->describe_silence());
-        kill_all();
+        kill_all(now);
         end_ = "hung";
         end_run(now, false, reason, 1);
         break;

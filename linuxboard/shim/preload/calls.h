@@ -40,6 +40,22 @@ pid_t thread_number(std::uint32_t index);
 struct OpenFile;
 OpenFile* open_file(int fd);
 
+// poll_calls.cpp
+/// An entry of poll(). `seen` is of an edge-triggered socket, as in wire::PollEntry.
+struct PollItem {
+    int fd = -1;
+    short events = 0;
+    short revents = 0;
+    std::uint32_t seen = 0;
+};
+int poll_items(PollItem* items, std::size_t count, Time deadline);
+
+// epoll_calls.cpp
+/// The descriptor is closed, or another file: nobody watches it any more.
+void drop_watches(int fd);
+/// A host's epoll watches something that neither this program nor time moves.
+bool epoll_watches_outside();
+
 // channel.cpp
 /// A pipe or a socket: what waits for it waits for another process.
 bool is_channel(int fd);

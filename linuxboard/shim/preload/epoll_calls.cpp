@@ -1,5 +1,5 @@
 // epoll: devices are registered here, everything else with the host's epoll, which is then one outside
-// descriptor more. Edge-triggered devices behave as level-triggered ones.
+// descriptor more. Of devices sockets can be edge-triggered, others behave as level-triggered ones then.
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
@@ -20,14 +20,16 @@
 using namespace puckloop::shim;
 
 namespace {
-constexpr int kMostWatches = 64;
+constexpr int kMostWatches = 1000;
 
 struct Watch {
     int epoll_fd = -1;
     int fd = -1;
     epoll_event event{};
     bool armed = false;
+    std::uint32_t seen = 0;  ///< of an edge-triggered one: its activity when it was reported
 };
+bool watches_outside = false;
 Watch watches[kMostWatches];
 
 Watch* find_watch(int epoll_fd, int fd) {
@@ -56,12 +58,13 @@ int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) 
         errno = ENOSPC;
         return -1;
     }
-    *watch = {epoll_fd, fd, *event, true};
+    const bool edge = (event->events & EPOLLET) != 0;
+    *watch = {epoll_fd, fd, *event, true, edge ? wire::kNeverSeen : 0};
     return 0;
 }
 
 /// Devices that are ready in `entries` become events.
-int gather(int epoll_fd, const pollfd* entries, nfds_t count, epoll_event* events, int most) {
+int gather(int epoll_fd, const PollItem* entries, nfds_t count, epoll_event* events, int most) {
     int total = 0;
     for (nfds_t i = 0; i < count && total < most; ++i) {
         if (entries[i].revents == 0 || entries[i].fd == epoll_fd) continue;
@@ -69,6 +72,7 @@ int gather(int epoll_fd, const pollfd* entries, nfds_t count, epoll_event* event
         if (watch == nullptr) continue;
         events[total] = watch->event;
         events[total++].events = static_cast<std::uint32_t>(entries[i].revents);
+        if (watch->seen != 0) watch->seen = entries[i].seen;
         if ((watch->event.events & EPOLLONESHOT) != 0) watch->armed = false;
     }
     return total;
@@ -86,6 +90,17 @@ bool is_epoll(int fd) {
 }
 }  // namespace
 
+namespace puckloop::shim {
+void drop_watches(int fd) {
+    for (Watch& watch : watches)
+        if (watch.fd == fd) watch = {};
+}
+
+bool epoll_watches_outside() {
+    return watches_outside;
+}
+}  // namespace puckloop::shim
+
 SHIM_EXPORT int epoll_create1(int flags) noexcept {
     const int fd = REAL(epoll_create1)(flags);
     if (active()) mark_internal(fd);
@@ -97,7 +112,10 @@ SHIM_EXPORT int epoll_create(int) noexcept {
 }
 
 SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* event) noexcept {
-    if (open_file(fd) == nullptr) return REAL(epoll_ctl)(epoll_fd, operation, fd, event);
+    if (open_file(fd) == nullptr) {
+        watches_outside = watches_outside || !is_internal(fd);
+        return REAL(epoll_ctl)(epoll_fd, operation, fd, event);
+    }
     charge(page().charges.device);
     epoll_event wanted{};
     if (operation != EPOLL_CTL_DEL && !get_from_program(wanted, event)) return -1;
@@ -115,17 +133,18 @@ static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline
         return -1;
     }
     if (!is_epoll(epoll_fd)) return -1;
-    pollfd entries[kMostWatches + 1];
+    PollItem entries[kMostWatches + 1];
     nfds_t count = 0;
-    entries[count++] = {epoll_fd, POLLIN, 0};
+    entries[count++] = {epoll_fd, POLLIN, 0, 0};
     for (const Watch& watch : watches) {
         if (watch.epoll_fd != epoll_fd || !watch.armed || open_file(watch.fd) == nullptr) continue;
-        entries[count++] = {watch.fd, static_cast<short>(watch.event.events & (POLLIN | POLLOUT | POLLPRI)),
-                            0};
+        constexpr std::uint32_t kKnown = POLLIN | POLLOUT | POLLPRI | POLLRDNORM | POLLWRNORM | POLLRDHUP;
+        entries[count++] = {watch.fd, static_cast<short>(watch.event.events & kKnown), 0, watch.seen};
     }
-    timespec left{};
-    if (deadline != kNever) left = to_timespec(board_time(std::max<Time>(deadline - now(), 0)));
-    const int ready = ppoll(entries, count, deadline == kNever ? nullptr : &left, mask);
+    static_cast<void>(mask);  // as ppoll() has it here, and its nanoseconds
+    if (deadline != kNever)
+        deadline = time_after(from_timespec(to_timespec(board_time(std::max<Time>(deadline - now(), 0)))));
+    const int ready = poll_items(entries, count, deadline);
     if (ready <= 0) return ready;
     epoll_event ready_devices[kMostWatches];
     const int devices = gather(epoll_fd, entries, count, ready_devices, std::min(most, kMostWatches));

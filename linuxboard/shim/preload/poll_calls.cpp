@@ -5,6 +5,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
@@ -23,10 +24,10 @@ using namespace puckloop::shim;
 namespace puckloop::shim {
 
 namespace {
-constexpr nfds_t kMostEntries = 256;
+constexpr nfds_t kMostEntries = FD_SETSIZE;
 
 /// The device entries through the node until `deadline`; number ready, or -1 and EINTR.
-int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
+int poll_devices(PollItem* entries, nfds_t count, Time deadline) {
     wire::PollEntry list[kMostEntries];
     nfds_t indices[kMostEntries];
     std::size_t total = 0;
@@ -39,7 +40,7 @@ int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
             continue;
         }
         only_ttys = only_ttys && file->kind == OpenFile::Kind::Tty;
-        list[total] = {file->handle, entries[i].events, 0};
+        list[total] = {file->handle, entries[i].events, 0, entries[i].seen};
         indices[total++] = i;
     }
     wire::Request request;
@@ -49,19 +50,21 @@ int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
     const std::size_t size = total * sizeof list[0];
     const auto ready = device_call(request, list, size, list, size, true);
     if (ready < 0) return -1;
-    for (std::size_t i = 0; i < total; ++i)
+    for (std::size_t i = 0; i < total; ++i) {
         entries[indices[i]].revents = list[i].returned;
+        entries[indices[i]].seen = list[i].seen;
+    }
     return static_cast<int>(ready);
 }
 
 /// What the host reports of the entries that are no devices, right now.
-int poll_outside(pollfd* entries, nfds_t count) {
+int poll_outside(PollItem* entries, nfds_t count) {
     pollfd list[kMostEntries];
     nfds_t indices[kMostEntries];
     nfds_t total = 0;
     for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
         if (entries[i].fd < 0 || open_file(entries[i].fd) != nullptr) continue;
-        list[total] = entries[i];
+        list[total] = {entries[i].fd, entries[i].events, 0};
         indices[total++] = i;
     }
     if (total == 0) return 0;
@@ -71,16 +74,33 @@ int poll_outside(pollfd* entries, nfds_t count) {
     return ready;
 }
 
-void name_outside_wait(const pollfd* entries, nfds_t count) {
+void name_outside_wait(const PollItem* entries, nfds_t count) {
     for (nfds_t i = 0; i < count; ++i) {
         const int fd = entries[i].fd;
-        if (fd >= 0 && open_file(fd) == nullptr && !is_internal(fd))
+        const bool waits = fd >= 0 && open_file(fd) == nullptr && !is_internal(fd);
+        if (waits && !(page().networked != 0 && is_file(fd)))  // a file is always ready
             note("the program waits on descriptor %d, which is outside of simulated time: runs may differ",
                  fd);
     }
 }
 
-int poll_until(pollfd* entries, nfds_t count, Time deadline) {
+/// Nothing but the devices, this one thread and time can make an entry ready: there is nothing to look at
+/// meanwhile.
+bool nobody_else_moves(const PollItem* entries, nfds_t count) {
+    if (page().networked == 0 || page().alive > 1 || epoll_watches_outside()) return false;
+    std::size_t threads = 0;
+    for (std::size_t i = 0; i < thread_count(); ++i) {
+        const Thread* thread = thread_at(i);
+        threads += thread != nullptr && thread->state != Thread::State::Finished ? 1 : 0;
+    }
+    if (threads > 1) return false;
+    for (nfds_t i = 0; i < count; ++i)
+        if (entries[i].fd >= 0 && open_file(entries[i].fd) == nullptr && !is_internal(entries[i].fd))
+            return false;
+    return true;
+}
+
+int poll_until(PollItem* entries, nfds_t count, Time deadline) {
     mark_call("poll");
     pthread_testcancel();
     charge(page().charges.device);
@@ -97,8 +117,8 @@ int poll_until(pollfd* entries, nfds_t count, Time deadline) {
         if (ready < 0) return -1;
         if (has_device) {
             const bool waits = ready == 0 && deadline > now();
-            const Time until =
-                waits ? std::min({deadline, time_after(kExternalPeriod), next_timer()}) : now();
+            const Time look = nobody_else_moves(entries, count) ? kNever : time_after(kExternalPeriod);
+            const Time until = waits ? std::min({deadline, look, next_timer()}) : now();
             if (waits) name_outside_wait(entries, count);
             const int devices = poll_devices(entries, count, until);
             if (devices < 0) return -1;
@@ -119,19 +139,26 @@ int poll_until(pollfd* entries, nfds_t count, Time deadline) {
     }
 }
 
+}  // namespace
+
+int poll_items(PollItem* items, std::size_t count, Time deadline) {
+    return poll_until(items, count, deadline);
+}
+
+namespace {
 Time deadline_of(const timespec* timeout) {
     return timeout == nullptr ? kNever : time_after(from_timespec(*timeout));
 }
 
 int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time deadline) {
-    pollfd entries[kMostEntries];
+    PollItem entries[kMostEntries];
     nfds_t total = 0;
     for (int fd = 0; fd < count && total < kMostEntries; ++fd) {
         int events = 0;
         if (reads != nullptr && FD_ISSET(fd, reads)) events |= POLLIN;
         if (writes != nullptr && FD_ISSET(fd, writes)) events |= POLLOUT;
         if (errors != nullptr && FD_ISSET(fd, errors)) events |= POLLPRI;
-        if (events != 0) entries[total++] = {fd, static_cast<short>(events), 0};
+        if (events != 0) entries[total++] = {fd, static_cast<short>(events), 0, 0};
     }
     const int result = poll_until(entries, total, deadline);
     if (result < 0) return result;
@@ -143,7 +170,7 @@ int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time 
         }
     }
     for (nfds_t i = 0; i < total; ++i) {
-        const pollfd& entry = entries[i];
+        const PollItem& entry = entries[i];
         const auto settle = [&](fd_set* set, int wanted, int happened) {
             if (set == nullptr || (entry.events & wanted) == 0) return;
             if ((entry.revents & happened) != 0) {
@@ -170,8 +197,13 @@ int poll_program(pollfd* theirs, nfds_t count, Time deadline) {
         return -1;
     }
     pollfd entries[FD_SETSIZE];
+    PollItem items[FD_SETSIZE];
     if (!copy_from_program(entries, theirs, count * sizeof(pollfd))) return -1;
-    const int ready = poll_until(entries, count, deadline);
+    for (nfds_t i = 0; i < count; ++i)
+        items[i] = {entries[i].fd, entries[i].events, 0, 0};
+    const int ready = poll_items(items, count, deadline);
+    for (nfds_t i = 0; i < count; ++i)
+        entries[i].revents = items[i].revents;
     return ready >= 0 && !copy_to_program(theirs, entries, count * sizeof(pollfd)) ? -1 : ready;
 }
 

@@ -15,11 +15,13 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 6;
+inline constexpr std::uint32_t kVersion = 7;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
 inline constexpr std::uint32_t kMaximumData = 16'384;
+/// The same for sockets: a datagram is not divided.
+inline constexpr std::uint32_t kMaximumSocketData = 66'560;
 
 enum class Op : std::uint32_t {
     Hello,        ///< a = kVersion, b = 1: forked, same image; data of the answer: what Exec or Fork kept
@@ -52,9 +54,22 @@ enum class Op : std::uint32_t {
     Ioctl,        ///< handle (camera), a = request, data: its struct, and what that points to; the same back
     Map,  ///< handle (camera), a, b = offset and length to be mapped; result: where in the shared memory
     VideoRead,  ///< handle (camera), a = most bytes; data: where they are in the shared memory (uint64)
+    // Sockets; addresses are SocketAddress
+    Socket,       ///< a = 1: a stream, 0: datagrams; result: handle
+    Bind,         ///< handle, data: address
+    Connect,      ///< handle, data: address
+    Listen,       ///< handle, a = backlog
+    Accept,       ///< handle; result: handle; data: address
+    Send,         ///< handle, a = 1: `data` begins with the address to send to; result: bytes taken
+    Receive,      ///< handle, a = most bytes, b = of kReceive...; data: SocketReceived, bytes
+    Shutdown,     ///< handle, a = as in shutdown(2)
+    SetOption,    ///< handle, a = level, b = name, data: value
+    GetOption,    ///< handle, a = level, b = name; data: value
+    SocketName,   ///< handle, a = 1: the other end's; data: address
+    SocketQueue,  ///< handle, a = 1: bytes that are not acknowledged, 0: bytes to read
 };
 
-enum class DeviceKind : std::uint32_t { None, Tty, I2c, Video };
+enum class DeviceKind : std::uint32_t { None, Tty, I2c, Video, Socket };
 
 struct Request {
     Op op = Op::Sync;
@@ -94,7 +109,31 @@ struct PollEntry {
     std::int32_t handle = -1;
     std::int16_t events = 0;
     std::int16_t returned = 0;
+    /// Of a socket; 0: level-triggered. Else it is ready only if its activity is another one; the same back
+    /// with the present activity.
+    std::uint32_t seen = 0;
 };
+inline constexpr std::uint32_t kNeverSeen = 0xffffffff;
+
+/// IPv4, both as numbers of the host.
+struct SocketAddress {
+    std::uint32_t address = 0;
+    std::uint16_t port = 0;
+    std::uint16_t padding = 0;
+};
+
+inline constexpr std::uint32_t kReceivePeek = 1, kReceiveAll = 2;
+struct SocketReceived {
+    SocketAddress from{};
+    std::uint32_t size = 0;  ///< of the whole datagram
+};
+
+/// A computer of the network, as in /etc/hosts.
+struct HostEntry {
+    std::uint32_t address = 0;
+    char name[60] = {};
+};
+inline constexpr std::uint32_t kMaximumHosts = 512;
 
 struct I2cSegment {
     std::uint16_t address = 0;
@@ -159,7 +198,7 @@ struct alignas(4096) Channel {
     static constexpr std::uint32_t kMostDone = 16;
     static constexpr std::uint32_t kMostWritten = 512;
     /// At least one completion with the most data.
-    static constexpr std::uint32_t kReplyRoom = 2 * kMaximumData;
+    static constexpr std::uint32_t kReplyRoom = 2 * kMaximumSocketData;
 
     Turn turn;
     std::uint32_t request_size = 0;  ///< bytes in `request_data`
@@ -171,7 +210,7 @@ struct alignas(4096) Channel {
     std::uint32_t written_size = 0;
     Done done[kMostDone];
     char written[kMostWritten];
-    char request_data[kMaximumData];
+    char request_data[kMaximumSocketData];
     char reply_data[kReplyRoom];
 };
 
@@ -227,6 +266,12 @@ struct Page {
     DeviceName devices[kMaximumDevices];
     char host_name[kNameLength] = {};
     std::uint32_t alive = 0;  ///< processes
+    // The network that the board is on.
+    std::uint8_t networked = 0;  ///< 0: sockets are the host's
+    std::uint8_t network_prefix = 0;
+    std::uint32_t network_address = 0;
+    std::uint32_t host_count = 0;
+    HostEntry hosts[kMaximumHosts];
     ProcessEntry processes[kMaximumProcesses];
 };
 

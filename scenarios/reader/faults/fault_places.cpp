@@ -1,5 +1,7 @@
 #include "scenarios/reader/faults/fault_places.h"
 
+#include "scenarios/reader/network_tables.h"
+
 namespace puckloop::scenarios {
 
 using cosim::PlaceKind;
@@ -17,6 +19,12 @@ void add_media(const Scenario& scenario, std::vector<FaultPlace>& places) {
         if (tam.xbee.fitted) ether.ends.push_back(tam.name);
         ircom.ends.push_back(tam.name);
     }
+    FaultPlace network{"network", PlaceKind::Network, {}, "network", true};
+    for (const NetworkComputer& computer : computers_of(scenario))
+        network.ends.push_back(computer.name);
+    if (!network.ends.empty()) places.push_back(std::move(network));
+    for (const ComputerHost& host : scenario.hosts)
+        places.push_back({host.name + ".linux", PlaceKind::Linux, {}, host.name + ".linux", true});
     if (!ether.ends.empty()) places.push_back(std::move(ether));
     if (scenario.world.ircom) places.push_back(std::move(ircom));
 }

@@ -126,7 +126,8 @@ void read_when(Reader& reader, const KindInfo& kind, FaultSpec& fault) {
 void read_match(Reader& reader, const KindInfo& kind, FaultSpec& fault) {
     if (kind.style == Style::Times || kind.mark == cosim::FaultKind::Cut) return;
     const bool uart = kind.place == cosim::PlaceKind::Uart;
-    const bool air = kind.place == cosim::PlaceKind::Radio || kind.place == cosim::PlaceKind::Xbee;
+    const bool air = kind.place == cosim::PlaceKind::Radio || kind.place == cosim::PlaceKind::Xbee ||
+                     kind.place == cosim::PlaceKind::Network;
     if (!uart && !air) return;
     if (kind.mark == cosim::FaultKind::Truncate) return;
     if (uart && reader.has("bytes")) fault.bytes = read_bytes(reader);

@@ -88,6 +88,7 @@ constexpr SchemaKey kLinux[]{
     {"arguments", "texts", "more of them, after program's or --linux's"}, {"cameras", "texts", "omni, front"}, {"camera_devices", "texts", "such as /dev/video1"},
     {"serial_devices", "texts", "names of the line to the main board; default /dev/ttyS0"},
     {"i2c_devices", "texts", "names of the robot's bus; default /dev/i2c-3"},
+    {"address", "text", "on the network; default by the robot's number"},
     {"save_frames", "integer", "every so-many-th frame is kept as a picture"}};
 constexpr SchemaKey kIrcom[]{{"record", "flag", "every edge of light in trace.csv"}};
 constexpr SchemaKey kTam[]{
@@ -108,6 +109,11 @@ constexpr SchemaKey kCoordinator[]{
 constexpr SchemaKey kBluetooth[]{
     {"range", "length", ""}, {"discovery", "time", ""}, {"name_time", "times2", "mean, standard deviation"},
     {"link_time", "times2", ""}, {"release_time", "times2", ""}};
+constexpr SchemaKey kNetwork[]{
+    {"mode", "text", "perfect (default) or fixed"}, {"address", "text", "default 10.0.0.0/24"},
+    {"latency", "time", "default 0.1 ms, fixed 1 ms"}, {"rate", "text", "fixed: of the channel; default 11 Mbit/s"},
+    {"queue", "integer", "fixed: packets that an interface keeps; default 1000"}};
+constexpr SchemaKey kHost[]{{"name", "text", "default host0, host1, ..."}, {"address", "text", "on the network"}};
 constexpr SchemaKey kGroup[]{
     {"of", "text", "robot (default), box, cylinder or lamp"}, {"count", "integer", "1 to 1000 units"},
     {"first", "integer", "number of the first one; default 0"},
@@ -201,6 +207,10 @@ ordered_json coordinator_schema() {
     place.erase("required");
     place["properties"].update(xbee_schema({})["properties"]);
     return place;
+}
+
+ordered_json host_schema() {
+    return program_schema("a computer on the network and its program", kHost);
 }
 
 /// What an event does comes from the table of commands; a new thing has the keys of its own table.
@@ -315,6 +325,8 @@ ordered_json scenario_schema() {
     properties["tam"] = list_schema(tam_schema());
     properties["radio"] = table_schema("the air between radio modules", kRadio);
     properties["coordinator"] = coordinator_schema();
+    properties["network"] = table_schema("between Linux boards and hosts (docs/network.md)", kNetwork);
+    properties["host"] = list_schema(host_schema());
     properties["bluetooth"] = table_schema("the air between Bluetooth modules", kBluetooth);
     ordered_json mission = table_schema("what the swarm is scored by", kMission, {"kind"});
     mission["properties"]["spot"] = list_schema(table_schema("counted; coverage: forbidden", kRegion));

@@ -4,6 +4,7 @@
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/files/video_names.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
@@ -87,6 +88,12 @@ int opened(const char* path, int fd) {
     return fd;
 }
 
+/// A file that the board has and the host has not, or another one.
+int open_made_file(const char* path) {
+    const int uevent = open_video_uevent(path);
+    return uevent >= 0 ? uevent : open_network_file(path);
+}
+
 /// The path does not depend on another folder than the working directory.
 bool is_absolute_from(int folder, const char* path) {
     return folder == AT_FDCWD || (is_text(path) && path[0] == '/');
@@ -100,7 +107,7 @@ SHIM_EXPORT int open(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
-    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(open)(path, flags, mode)) : open_device(device, flags);
 }
@@ -111,7 +118,7 @@ SHIM_EXPORT int open64(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
-    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(open64)(path, flags, mode)) : open_device(device, flags);
 }
@@ -122,7 +129,7 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_at(folder, path);
-    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
@@ -135,7 +142,7 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_at(folder, path);
-    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))

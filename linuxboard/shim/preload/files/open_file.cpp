@@ -1,7 +1,9 @@
 #include "linuxboard/shim/preload/files/open_file.h"
 
 #include "base/random.h"
+#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
@@ -43,6 +45,18 @@ static const char* path_of(const OpenFile& file) {
 
 OpenFile* open_file(int fd) {
     if (fd < 0 || fd >= kMostDescriptors || table[fd] == nullptr || !active()) return nullptr;
+    return table[fd];
+}
+
+OpenFile* adopt_descriptor(int fd) {
+    if (fd >= kMostDescriptors) {
+        REAL(close)(fd);
+        errno = EMFILE;
+        return nullptr;
+    }
+    release_file(fd);
+    table[fd] = new OpenFile;
+    table[fd]->references = 1;
     return table[fd];
 }
 
@@ -116,7 +130,9 @@ void take_over_files(FileEntry* list, std::size_t count) {
         if (list[i].same_as == list[i].fd) {
             file = new OpenFile(list[i].file);
             file->references = 0;
-            file->path = file->kind == OpenFile::Kind::Random ? kRandomPath : path_of(*file);
+            file->path = file->kind == OpenFile::Kind::Random   ? kRandomPath
+                         : file->kind == OpenFile::Kind::Socket ? kSocketPath
+                                                                : path_of(*file);
         } else {
             file = table[list[i].same_as];
         }
@@ -138,6 +154,7 @@ bool release_file(int fd) {
     if (fd < 0 || fd >= kMostDescriptors || table[fd] == nullptr) return false;
     OpenFile* file = table[fd];
     table[fd] = nullptr;
+    drop_watches(fd);
     if (--file->references > 0) return true;
     if (file->handle >= 0 && active()) {
         charge(page().charges.device);
@@ -154,6 +171,7 @@ std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
     mark_call("read");
     pthread_testcancel();
     if (file.kind == OpenFile::Kind::Random) return read_random(buffer, size);
+    if (file.kind == OpenFile::Kind::Socket) return read_socket(file, buffer, size, 0);
     charge(page().charges.device);
     if ((file.flags & O_ACCMODE) == O_WRONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
         errno = EBADF;
@@ -174,6 +192,7 @@ std::int64_t write_device(OpenFile& file, const void* data, std::size_t size) {
     mark_call("write");
     pthread_testcancel();
     if (file.kind == OpenFile::Kind::Random) return static_cast<std::int64_t>(size);
+    if (file.kind == OpenFile::Kind::Socket) return write_socket(file, data, size, 0);
     charge(page().charges.device);
     if ((file.flags & O_ACCMODE) == O_RDONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
         errno = EBADF;

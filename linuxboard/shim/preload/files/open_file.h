@@ -11,7 +11,7 @@ namespace puckloop::shim {
 
 /// One open file description; several descriptors may share it.
 struct OpenFile {
-    enum class Kind { Tty, I2c, Random, Video };
+    enum class Kind { Tty, I2c, Random, Video, Socket };
     Kind kind = Kind::Tty;
     const char* path = "";
     int handle = -1;
@@ -22,7 +22,9 @@ struct OpenFile {
     std::uint16_t slave = 0;
     bool ten_bit = false;
     bool pec = false;
+    bool stream = false;  ///< of a socket
 };
+inline constexpr const char* kSocketPath = "socket";
 
 /// The device behind a descriptor, or nullptr. Always nullptr while nothing is conducted.
 OpenFile* open_file(int fd);
@@ -36,6 +38,9 @@ int device_of(const char* path);
 /// symbolic link to a device is none.
 int device_at(int folder, const char* path, bool follow = true);
 
+/// A new open file for the descriptor `fd` of the host; nullptr and EMFILE, and `fd` closed, if there is no
+/// room.
+OpenFile* adopt_descriptor(int fd);
 /// Opens a device; a descriptor, or -1 and errno.
 int open_device(int device, int flags);
 /// One descriptor as a program leaves it to its successor in the same process.

@@ -44,7 +44,8 @@ const char* device_name(const char* path) {
 }
 const char* device_name(int fd) {
     const OpenFile* file = open_file(fd);
-    return file != nullptr ? file->path : nullptr;
+    const bool device = file != nullptr && file->kind != OpenFile::Kind::Socket;  // that is one of the host's
+    return device ? file->path : nullptr;
 }
 /// With AT_EMPTY_PATH the folder itself is meant.
 const char* device_name(int folder, const char* path, int flags) {

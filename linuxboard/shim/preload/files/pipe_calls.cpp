@@ -1,5 +1,5 @@
-// Pipes, socket pairs, event descriptors and sockets: what threads of the program hand each other is
-// conducted, what comes from outside is looked at.
+// Pipes, socket pairs and event descriptors: what threads of the program hand each other is conducted, what
+// comes from outside is looked at.
 
 #include "linuxboard/shim/preload/outside.h"
 
@@ -35,33 +35,4 @@ SHIM_EXPORT int eventfd(unsigned value, int flags) noexcept {
     const int fd = REAL(eventfd)(value, flags);
     if (active()) mark_internal(fd);
     return fd;
-}
-
-SHIM_EXPORT ssize_t recv(int fd, void* buffer, size_t size, int flags) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recv)(fd, buffer, size, flags);
-    return outside(fd, POLLIN, [&] { return REAL(recv)(fd, buffer, size, flags); });
-}
-
-SHIM_EXPORT ssize_t recvfrom(int fd, void* buffer, size_t size, int flags, sockaddr* from,
-                             socklen_t* length) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvfrom)(fd, buffer, size, flags, from, length);
-    return outside(fd, POLLIN, [&] { return REAL(recvfrom)(fd, buffer, size, flags, from, length); });
-}
-
-SHIM_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvmsg)(fd, message, flags);
-    return outside(fd, POLLIN, [&] { return REAL(recvmsg)(fd, message, flags); });
-}
-
-SHIM_EXPORT ssize_t send(int fd, const void* data, size_t size, int flags) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(send)(fd, data, size, flags);
-    return outside(fd, POLLOUT, [&] { return REAL(send)(fd, data, size, flags); });
-}
-
-SHIM_EXPORT int accept4(int fd, sockaddr* from, socklen_t* length, int flags) {
-    return static_cast<int>(outside(fd, POLLIN, [&] { return REAL(accept4)(fd, from, length, flags); }));
-}
-
-SHIM_EXPORT int accept(int fd, sockaddr* from, socklen_t* length) {
-    return accept4(fd, from, length, 0);
 }

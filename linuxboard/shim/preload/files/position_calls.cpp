@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/real.h"
 
@@ -33,7 +34,8 @@ bool is_link(int fd) {
 /// 0 if a read or write at `offset` is one at any place; -1 and errno.
 int check_position(const OpenFile& file, off_t offset) {
     if (offset < 0) return fail(EINVAL);
-    return file.kind == OpenFile::Kind::Tty ? fail(ESPIPE) : 0;
+    const bool has_none = file.kind == OpenFile::Kind::Tty || file.kind == OpenFile::Kind::Socket;
+    return has_none ? fail(ESPIPE) : 0;
 }
 
 /// Also the link's, which are none of the program's.
@@ -124,10 +126,12 @@ SHIM_EXPORT ssize_t pwritev2(int fd, const iovec* parts, int count, off_t offset
 }
 
 SHIM_EXPORT ssize_t sendfile(int to, int from, off_t* offset, size_t size) noexcept {
+    if (socket_file(to) != nullptr && !is_device(from))
+        return static_cast<ssize_t>(send_file(to, from, offset, size));
     return is_device(to) || is_device(from) ? fail(EINVAL) : REAL(sendfile)(to, from, offset, size);
 }
 SHIM_EXPORT ssize_t sendfile64(int to, int from, off64_t* offset, size_t size) noexcept {
-    return is_device(to) || is_device(from) ? fail(EINVAL) : REAL(sendfile64)(to, from, offset, size);
+    return sendfile(to, from, offset, size);
 }
 SHIM_EXPORT ssize_t splice(int from, off64_t* from_offset, int to, off64_t* to_offset, size_t size,
                            unsigned flags) {

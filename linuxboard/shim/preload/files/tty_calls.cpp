@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/preload/files/device_numbers.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
@@ -367,6 +368,8 @@ int device_ioctl(OpenFile& file, unsigned long request, void* argument, const vo
         return i2c_ioctl(file, request, argument, caller);
     case OpenFile::Kind::Video:
         return video_ioctl(file, request, argument);
+    case OpenFile::Kind::Socket:
+        return socket_ioctl(file, request, argument);
     case OpenFile::Kind::Random:
         break;
     }

@@ -232,6 +232,9 @@ void route_signal() {
     if (pending_signals == 0) return;
     Thread* taker = signal_taker();
     if (taker == nullptr || !taker->interruptible) return;
+    // Its call has ended already: what it received is not lost, and the handler runs before it returns.
+    const bool has_ended = taker->state == Thread::State::Ready && taker->wake == Wake::Device;
+    if (has_ended && page().networked != 0) return;
     if (taker->state == Thread::State::Device) withdraw(*taker);
     if (taker->state == Thread::State::Parked || taker->state == Thread::State::Ready)
         make_ready(*taker, clock_now, Wake::Signal);
@@ -426,7 +429,9 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
         if (received != nullptr) *received = me->received;
         after_wait(me);
         if (reason == Wake::Signal) {
-            if (take_signals()) continue;
+            // poll() is never restarted; what a handler wrote into a pipe is seen by the next one.
+            const bool ends = request.op == wire::Op::Poll && page().networked != 0;
+            if (take_signals() && !ends) continue;
             errno = EINTR;
             return -1;
         }

@@ -2,12 +2,15 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <sys/eventfd.h>
+#include <sys/syscall.h>
 #include <sys/time.h>
 #include <sys/timerfd.h>
 #include <time.h>
@@ -205,7 +208,13 @@ SHIM_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itim
     Timer* timer = active() ? timer_of(fd) : nullptr;
     if (timer == nullptr) return REAL(timerfd_settime)(fd, flags, value, old);
     charge(page().charges.device);
-    return set_timer(timer, (flags & TFD_TIMER_ABSTIME) != 0, value, old);
+    if (set_timer(timer, (flags & TFD_TIMER_ABSTIME) != 0, value, old) != 0) return -1;
+    // What had run out before and was not read is forgotten.
+    pollfd entry{fd, POLLIN, 0};
+    std::uint64_t expired = 0;
+    if (REAL(poll)(&entry, 1, 0) == 1)
+        host_call(SYS_read, fd, reinterpret_cast<long>(&expired), sizeof expired);
+    return 0;
 }
 
 SHIM_EXPORT int pause() {

@@ -1,0 +1,63 @@
+#pragma once
+// A socket as the kernel keeps it.
+
+#include "linuxboard/shim/network/tcp_connection.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <set>
+#include <string>
+
+namespace puckloop::linuxboard {
+
+/// What setsockopt() sets; most is stored and read back.
+struct SocketOptions {
+    bool no_delay = false, reuse_address = false, reuse_port = false, broadcast = false, keep_alive = false;
+    bool linger = false;
+    int linger_s = 0;
+    cosim::Time receive_timeout = 0, send_timeout = 0;    ///< 0: never
+    int receive_buffer = 212'992, send_buffer = 212'992;  ///< as getsockopt() gives them; rmem_default
+    int keep_idle = 7200, keep_interval = 75, keep_count = 9;
+    int time_to_live = 64, service = 0, priority = 0;
+    int group_time_to_live = 1;
+    bool group_loop = true;
+    int user_timeout = 0, defer_accept = 0, low_water = 1;
+    bool quick_acknowledgement = true, cork = false;
+};
+
+struct Socket {
+    /// What a datagram takes of the buffer beside its data, as of Linux (sk_buff).
+    static constexpr std::size_t kDatagramCost = 768;
+    struct Datagram {
+        Endpoint from;
+        std::string data;
+    };
+
+    int id = 0;
+    bool stream = false;
+    bool open = true;  ///< a program has it
+    Endpoint local{}, peer{};
+    bool bound = false, connected = false;
+    bool read_shut = false, write_shut = false;
+    int error = 0;  ///< SO_ERROR, where it is not the connection's
+    std::uint32_t activity = 1;
+    SocketOptions options{};
+
+    // SOCK_DGRAM
+    std::deque<Datagram> queue{};
+    std::size_t queued = 0;  ///< octets, with what the kernel needs for each
+    std::set<protocols::IpAddress> groups{};
+
+    // SOCK_STREAM
+    std::unique_ptr<TcpConnection> tcp{};
+    bool listening = false;
+    std::size_t backlog = 0;
+    std::deque<int> ready{};  ///< connections to be accepted
+    bool connecting = false;  ///< connect() was called, and nobody was given its end yet
+    int listener = -1;        ///< of one that is not accepted yet
+    cosim::Time unreachable_at = cosim::kNever;
+};
+
+}  // namespace puckloop::linuxboard

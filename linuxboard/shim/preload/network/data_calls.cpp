@@ -1,0 +1,338 @@
+// What moves data through sockets: send, recv and their kin.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/network/sockets.h"
+#include "linuxboard/shim/preload/outside.h"
+#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+using namespace puckloop::shim;
+
+extern "C" {
+ssize_t __recv_chk(int, void*, size_t, size_t, int);
+ssize_t __recvfrom_chk(int, void*, size_t, size_t, int, sockaddr*, socklen_t*);
+}
+
+namespace {
+
+int fail(int error) {
+    errno = error;
+    return -1;
+}
+
+bool waits(const OpenFile& file, int flags) {
+    return (file.flags & O_NONBLOCK) == 0 && (flags & MSG_DONTWAIT) == 0;
+}
+
+/// One datagram, or one piece of a stream.
+std::int64_t send_piece(OpenFile& file, const char* data, std::size_t size, int flags,
+                        const wire::SocketAddress* to) {
+    wire::Request request;
+    request.op = wire::Op::Send;
+    request.handle = file.handle;
+    request.nonblocking = !waits(file, flags);
+    const std::size_t head = to != nullptr ? sizeof *to : 0;
+    if (head == 0) return device_call(request, data, size, nullptr, 0, true);
+    request.a = 1;
+    std::vector<char> all(head + size);
+    std::memcpy(all.data(), to, head);
+    if (size > 0) std::memcpy(all.data() + head, data, size);
+    return device_call(request, all.data(), all.size(), nullptr, 0, true);
+}
+
+struct Arrived {
+    std::vector<char> data;
+    wire::SocketReceived head{};
+};
+
+std::int64_t receive(OpenFile& file, std::size_t most, int flags, Arrived& arrived) {
+    mark_call("recv");
+    pthread_testcancel();
+    charge(page().charges.device);
+    if ((flags & MSG_OOB) != 0) return fail(EINVAL);
+    if ((flags & MSG_ERRQUEUE) != 0) return fail(EAGAIN);
+    constexpr std::size_t kMost = wire::kMaximumSocketData - sizeof(wire::SocketReceived);
+    if (file.stream && most == 0) return 0;
+    wire::Request request;
+    request.op = wire::Op::Receive;
+    request.handle = file.handle;
+    request.a = static_cast<std::uint32_t>(std::min(most, kMost));
+    request.b = ((flags & MSG_PEEK) != 0 ? wire::kReceivePeek : 0) |
+                ((flags & MSG_WAITALL) != 0 ? wire::kReceiveAll : 0);
+    request.nonblocking = !waits(file, flags);
+    std::vector<char> answer(sizeof arrived.head + request.a);
+    std::size_t size = 0;
+    const std::int64_t result = device_call(request, nullptr, 0, answer.data(), answer.size(), true, &size);
+    if (result < 0) return -1;
+    std::memcpy(&arrived.head, answer.data(), std::min(size, sizeof arrived.head));
+    arrived.data.assign(answer.begin() + sizeof arrived.head,
+                        answer.begin() + static_cast<std::ptrdiff_t>(std::max(size, sizeof arrived.head)));
+    return result;
+}
+
+bool put_sender(const wire::SocketReceived& head, sockaddr* theirs, socklen_t* length) {
+    if (theirs == nullptr || length == nullptr) return true;
+    socklen_t room = 0;
+    if (!get_from_program(room, length)) return false;
+    sockaddr_in from{};
+    from.sin_family = AF_INET;
+    from.sin_addr.s_addr = htonl(head.from.address);
+    from.sin_port = htons(head.from.port);
+    if (!copy_to_program(theirs, &from, std::min<std::size_t>(room, sizeof from))) return false;
+    return put_to_program(length, static_cast<socklen_t>(sizeof from));
+}
+
+/// What a call on a datagram of `size` octets answers that has room for less.
+std::int64_t length_of(const OpenFile& file, const Arrived& arrived, int flags) {
+    const bool whole = !file.stream && (flags & MSG_TRUNC) != 0;
+    return whole ? arrived.head.size : static_cast<std::int64_t>(arrived.data.size());
+}
+
+/// The program's parts of a message.
+bool get_vector(std::vector<iovec>& parts, const msghdr& message) {
+    if (message.msg_iovlen > IOV_MAX) return fail(EMSGSIZE) == 0;
+    parts.resize(message.msg_iovlen);
+    return copy_from_program(parts.data(), message.msg_iov, parts.size() * sizeof(iovec));
+}
+
+std::int64_t send_message(OpenFile& file, const msghdr& message, int flags) {
+    std::vector<iovec> parts;
+    if (!get_vector(parts, message)) return -1;
+    constexpr std::size_t kMost = std::size_t{1} << 20;  // the rest is another call's
+    std::vector<char> data;
+    for (const iovec& part : parts) {
+        const std::size_t before = data.size(), size = std::min(part.iov_len, kMost - before);
+        data.resize(before + size);
+        if (size > 0 && !copy_from_program(data.data() + before, part.iov_base, size)) return -1;
+    }
+    if (message.msg_controllen != 0) note("control data of sendmsg() is not carried by the network");
+    if (message.msg_name == nullptr || file.stream)
+        return send_bytes(file, data.data(), data.size(), flags, nullptr);
+    sockaddr_in to{};
+    if (message.msg_namelen < sizeof to) return fail(EINVAL);
+    if (!copy_from_program(&to, message.msg_name, sizeof to)) return -1;
+    if (to.sin_family != AF_INET) return fail(EAFNOSUPPORT);
+    const wire::SocketAddress address{ntohl(to.sin_addr.s_addr), ntohs(to.sin_port), 0};
+    return send_bytes(file, data.data(), data.size(), flags, &address);
+}
+
+std::int64_t receive_message(OpenFile& file, msghdr& message, int flags) {
+    std::vector<iovec> parts;
+    if (!get_vector(parts, message)) return -1;
+    std::size_t room = 0;
+    for (const iovec& part : parts)
+        room += part.iov_len;
+    Arrived arrived;
+    if (receive(file, room, flags, arrived) < 0) return -1;
+    std::size_t done = 0;
+    for (const iovec& part : parts) {
+        const std::size_t size = std::min(part.iov_len, arrived.data.size() - done);
+        if (size > 0 && !copy_to_program(part.iov_base, arrived.data.data() + done, size)) return -1;
+        done += size;
+    }
+    message.msg_flags = !file.stream && arrived.head.size > arrived.data.size() ? MSG_TRUNC : 0;
+    message.msg_controllen = 0;
+    if (file.stream || message.msg_name == nullptr) {
+        message.msg_namelen = 0;
+    } else if (!put_sender(arrived.head, static_cast<sockaddr*>(message.msg_name), &message.msg_namelen)) {
+        return -1;
+    }
+    return length_of(file, arrived, flags);
+}
+
+}  // namespace
+
+namespace puckloop::shim {
+
+std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int flags,
+                        const wire::SocketAddress* to) {
+    mark_call("send");
+    pthread_testcancel();
+    charge(page().charges.device);
+    if ((flags & MSG_OOB) != 0) return fail(EOPNOTSUPP);
+    std::int64_t sent = 0;
+    if (!file.stream) {
+        if (size > wire::kMaximumSocketData - sizeof *to) return fail(EMSGSIZE);
+        sent = send_piece(file, data, size, flags, to);
+    }
+    while (file.stream) {
+        const std::size_t part = std::min<std::size_t>(size, wire::kMaximumData);
+        const std::int64_t taken = send_piece(file, data, part, flags, nullptr);
+        if (taken < 0) {
+            if (sent == 0) sent = -1;
+            break;
+        }
+        sent += taken;
+        data += taken;
+        size -= static_cast<std::size_t>(taken);
+        if (size == 0 || static_cast<std::size_t>(taken) < part) break;
+    }
+    if (sent < 0 && errno == EPIPE && file.stream && (flags & MSG_NOSIGNAL) == 0) {
+        raise(SIGPIPE);
+        errno = EPIPE;
+    }
+    return sent;
+}
+
+std::int64_t write_socket(OpenFile& file, const void* data, std::size_t size, int flags) {
+    // A copy: what is sent in pieces must be there as a whole.
+    std::vector<char> bytes(std::min(size, std::size_t{1} << 20));
+    if (!copy_from_program(bytes.data(), data, bytes.size())) return -1;
+    return send_bytes(file, bytes.data(), bytes.size(), flags, nullptr);
+}
+
+std::int64_t read_socket(OpenFile& file, void* buffer, std::size_t size, int flags) {
+    Arrived arrived;
+    if (receive(file, size, flags, arrived) < 0) return -1;
+    if (!copy_to_program(buffer, arrived.data.data(), arrived.data.size())) return -1;
+    return length_of(file, arrived, flags);
+}
+
+}  // namespace puckloop::shim
+
+SHIM_EXPORT ssize_t send(int fd, const void* data, size_t size, int flags) {
+    if (OpenFile* file = socket_file(fd)) return write_socket(*file, data, size, flags);
+    if ((flags & MSG_DONTWAIT) != 0) return REAL(send)(fd, data, size, flags);
+    return outside(fd, POLLOUT, [&] { return REAL(send)(fd, data, size, flags); });
+}
+
+SHIM_EXPORT ssize_t sendto(int fd, const void* data, size_t size, int flags, const sockaddr* to,
+                           socklen_t length) {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(sendto)(fd, data, size, flags, to, length);
+    iovec part{const_cast<void*>(data), size};
+    msghdr message{};
+    message.msg_name = const_cast<sockaddr*>(to);
+    message.msg_namelen = length;
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    return send_message(*file, message, flags);
+}
+
+SHIM_EXPORT ssize_t sendmsg(int fd, const msghdr* theirs, int flags) {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(sendmsg)(fd, theirs, flags);
+    msghdr message{};
+    return get_from_program(message, theirs) ? send_message(*file, message, flags) : -1;
+}
+
+SHIM_EXPORT int sendmmsg(int fd, mmsghdr* theirs, unsigned count, int flags) {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(sendmmsg)(fd, theirs, count, flags);
+    for (unsigned i = 0; i < count; ++i) {
+        mmsghdr one{};
+        const bool there = get_from_program(one, theirs + i);
+        const std::int64_t sent = there ? send_message(*file, one.msg_hdr, flags) : -1;
+        if (sent < 0) return i > 0 ? static_cast<int>(i) : -1;
+        one.msg_len = static_cast<unsigned>(sent);
+        if (!put_to_program(theirs + i, one)) return -1;
+    }
+    return static_cast<int>(count);
+}
+
+SHIM_EXPORT ssize_t recv(int fd, void* buffer, size_t size, int flags) {
+    if (OpenFile* file = socket_file(fd)) return read_socket(*file, buffer, size, flags);
+    if ((flags & MSG_DONTWAIT) != 0) return REAL(recv)(fd, buffer, size, flags);
+    return outside(fd, POLLIN, [&] { return REAL(recv)(fd, buffer, size, flags); });
+}
+
+SHIM_EXPORT ssize_t __recv_chk(int fd, void* buffer, size_t size, size_t room, int flags) {
+    if (size > room) __builtin_trap();
+    return recv(fd, buffer, size, flags);
+}
+
+SHIM_EXPORT ssize_t recvfrom(int fd, void* buffer, size_t size, int flags, sockaddr* from,
+                             socklen_t* length) {
+    if (OpenFile* file = socket_file(fd)) {
+        Arrived arrived;
+        if (receive(*file, size, flags, arrived) < 0) return -1;
+        if (!copy_to_program(buffer, arrived.data.data(), arrived.data.size())) return -1;
+        if (file->stream) {
+            if (from != nullptr && length != nullptr && !put_to_program(length, socklen_t{0})) return -1;
+        } else if (!put_sender(arrived.head, from, length)) {
+            return -1;
+        }
+        return length_of(*file, arrived, flags);
+    }
+    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvfrom)(fd, buffer, size, flags, from, length);
+    return outside(fd, POLLIN, [&] { return REAL(recvfrom)(fd, buffer, size, flags, from, length); });
+}
+
+SHIM_EXPORT ssize_t __recvfrom_chk(int fd, void* buffer, size_t size, size_t room, int flags, sockaddr* from,
+                                   socklen_t* length) {
+    if (size > room) __builtin_trap();
+    return recvfrom(fd, buffer, size, flags, from, length);
+}
+
+SHIM_EXPORT ssize_t recvmsg(int fd, msghdr* theirs, int flags) {
+    if (OpenFile* file = socket_file(fd)) {
+        msghdr message{};
+        if (!get_from_program(message, theirs)) return -1;
+        const std::int64_t received = receive_message(*file, message, flags);
+        return received >= 0 && !put_to_program(theirs, message) ? -1 : received;
+    }
+    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvmsg)(fd, theirs, flags);
+    return outside(fd, POLLIN, [&] { return REAL(recvmsg)(fd, theirs, flags); });
+}
+
+SHIM_EXPORT int recvmmsg(int fd, mmsghdr* theirs, unsigned count, int flags, timespec* timeout) {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(recvmmsg)(fd, theirs, count, flags, timeout);
+    for (unsigned i = 0; i < count; ++i) {
+        mmsghdr one{};
+        const int more = i > 0 && (flags & MSG_WAITFORONE) != 0 ? MSG_DONTWAIT : 0;
+        const bool there = get_from_program(one, theirs + i);
+        const std::int64_t received =
+            there ? receive_message(*file, one.msg_hdr, (flags & ~MSG_WAITFORONE) | more) : -1;
+        if (received < 0) return i > 0 ? static_cast<int>(i) : -1;
+        one.msg_len = static_cast<unsigned>(received);
+        if (!put_to_program(theirs + i, one)) return -1;
+    }
+    return static_cast<int>(count);
+}
+
+namespace puckloop::shim {
+
+std::int64_t send_file(int to, int from, off_t* offset, std::size_t size) {
+    OpenFile* file = socket_file(to);
+    std::size_t done = 0;
+    off_t place = 0;
+    if (offset != nullptr && !get_from_program(place, offset)) return -1;
+    while (done < size) {
+        char part[wire::kMaximumData];
+        const std::size_t wanted = std::min(size - done, sizeof part);
+        const ssize_t count =
+            offset != nullptr ? REAL(pread)(from, part, wanted, place) : REAL(read)(from, part, wanted);
+        if (count <= 0) {
+            if (count < 0 && done == 0) return -1;
+            break;
+        }
+        const std::int64_t sent = send_bytes(*file, part, static_cast<std::size_t>(count), 0, nullptr);
+        const std::int64_t taken = std::max<std::int64_t>(sent, 0);
+        place += taken;
+        done += static_cast<std::size_t>(taken);
+        if (taken < count) {
+            const int error = errno;
+            if (offset == nullptr) REAL(lseek)(from, static_cast<off_t>(taken - count), SEEK_CUR);
+            errno = error;
+            if (sent < 0 && done == 0) return -1;
+            break;
+        }
+    }
+    if (offset != nullptr && !put_to_program(offset, place)) return -1;
+    return static_cast<std::int64_t>(done);
+}
+
+}  // namespace puckloop::shim

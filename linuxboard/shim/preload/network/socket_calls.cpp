@@ -1,0 +1,262 @@
+// socket() and the calls that set a socket up.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/network/sockets.h"
+#include "linuxboard/shim/preload/outside.h"
+#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <fcntl.h>
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+using namespace puckloop::shim;
+
+namespace puckloop::shim {
+
+bool networked() {
+    return active() && page().networked != 0;
+}
+
+OpenFile* socket_file(int fd) {
+    OpenFile* file = open_file(fd);
+    return file != nullptr && file->kind == OpenFile::Kind::Socket ? file : nullptr;
+}
+
+}  // namespace puckloop::shim
+
+namespace {
+
+int fail(int error) {
+    errno = error;
+    return -1;
+}
+
+wire::Request request_of(const OpenFile& file, wire::Op op) {
+    wire::Request request;
+    request.op = op;
+    request.handle = file.handle;
+    request.nonblocking = (file.flags & O_NONBLOCK) != 0;
+    return request;
+}
+
+/// The program's address, as IPv4; false and errno for what is none.
+bool get_address(wire::SocketAddress& address, const sockaddr* theirs, socklen_t length) {
+    sockaddr_in given{};
+    if (length < sizeof(sa_family_t)) return fail(EINVAL) == 0;
+    if (!copy_from_program(&given, theirs, std::min<std::size_t>(length, sizeof given))) return false;
+    if (given.sin_family != AF_INET) return fail(EAFNOSUPPORT) == 0;
+    if (length < sizeof given) return fail(EINVAL) == 0;
+    address = {ntohl(given.sin_addr.s_addr), ntohs(given.sin_port), 0};
+    return true;
+}
+
+/// As much of it as there is room for, as the kernel does.
+bool put_address(const wire::SocketAddress& address, sockaddr* theirs, socklen_t* length) {
+    if (theirs == nullptr || length == nullptr) return true;
+    socklen_t room = 0;
+    if (!get_from_program(room, length)) return false;
+    if (static_cast<int>(room) < 0) return fail(EINVAL) == 0;
+    sockaddr_in given{};
+    given.sin_family = AF_INET;
+    given.sin_addr.s_addr = htonl(address.address);
+    given.sin_port = htons(address.port);
+    if (!copy_to_program(theirs, &given, std::min<std::size_t>(room, sizeof given))) return false;
+    return put_to_program(length, static_cast<socklen_t>(sizeof given));
+}
+
+/// A descriptor for what the node has opened as `handle`.
+int new_descriptor(int handle, bool stream, int type_flags) {
+    const int kind = (stream ? SOCK_STREAM : SOCK_DGRAM) | (type_flags & SOCK_CLOEXEC);
+    const int fd = REAL(socket)(AF_UNIX, kind, 0);
+    OpenFile* file = fd >= 0 ? adopt_descriptor(fd) : nullptr;
+    if (file == nullptr) {
+        const int error = errno;
+        wire::Request request;
+        request.op = wire::Op::Close;
+        request.handle = handle;
+        device_call(request);
+        return fail(error);
+    }
+    file->kind = OpenFile::Kind::Socket;
+    file->path = kSocketPath;
+    file->handle = handle;
+    file->stream = stream;
+    file->flags = O_RDWR | ((type_flags & SOCK_NONBLOCK) != 0 ? O_NONBLOCK : 0);
+    return fd;
+}
+
+/// What a kernel without this family, or a user without rights, answers.
+int refuse_family(int domain, int type) {
+    if (domain == AF_PACKET || type == SOCK_RAW) {
+        note("raw and packet sockets are not allowed on the network");
+        return fail(EPERM);
+    }
+    note("sockets of the address family %d are not carried by the network", domain);
+    return fail(EAFNOSUPPORT);
+}
+
+int open_socket(int domain, int type, int protocol) {
+    mark_call("socket");
+    charge(page().charges.device);
+    constexpr int kFlags = SOCK_NONBLOCK | SOCK_CLOEXEC;
+    const int kind = type & ~kFlags;
+    if (domain != AF_INET || kind == SOCK_RAW) return refuse_family(domain, kind);
+    const bool stream = kind == SOCK_STREAM;
+    if (!stream && kind != SOCK_DGRAM) return fail(ESOCKTNOSUPPORT);
+    if (protocol != 0 && protocol != (stream ? IPPROTO_TCP : IPPROTO_UDP)) {
+        note("sockets of the IP protocol %d are not carried by the network", protocol);
+        return fail(EPROTONOSUPPORT);
+    }
+    wire::Request request;
+    request.op = wire::Op::Socket;
+    request.a = stream ? 1 : 0;
+    const auto handle = static_cast<int>(device_call(request));
+    return handle < 0 ? -1 : new_descriptor(handle, stream, type);
+}
+
+}  // namespace
+
+SHIM_EXPORT int socket(int domain, int type, int protocol) noexcept {
+    if (!networked() || domain == AF_UNIX) return REAL(socket)(domain, type, protocol);
+    return open_socket(domain, type, protocol);
+}
+
+SHIM_EXPORT int bind(int fd, const sockaddr* address, socklen_t length) noexcept {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(bind)(fd, address, length);
+    mark_call("bind");
+    charge(page().charges.device);
+    wire::SocketAddress to;
+    if (!get_address(to, address, length)) return -1;
+    return static_cast<int>(device_call(request_of(*file, wire::Op::Bind), &to, sizeof to));
+}
+
+SHIM_EXPORT int listen(int fd, int backlog) noexcept {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(listen)(fd, backlog);
+    mark_call("listen");
+    charge(page().charges.device);
+    wire::Request request = request_of(*file, wire::Op::Listen);
+    request.a = static_cast<std::uint32_t>(std::max(backlog, 0));
+    return static_cast<int>(device_call(request));
+}
+
+SHIM_EXPORT int connect(int fd, const sockaddr* address, socklen_t length) {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(connect)(fd, address, length);
+    mark_call("connect");
+    pthread_testcancel();
+    charge(page().charges.device);
+    sa_family_t family = AF_INET;
+    if (length >= sizeof family && !copy_from_program(&family, address, sizeof family)) return -1;
+    wire::Request request = request_of(*file, wire::Op::Connect);
+    wire::SocketAddress to;
+    if (family == AF_UNSPEC && !file->stream) {
+        request.a = 1;
+    } else if (!get_address(to, address, length)) {
+        return -1;
+    }
+    return static_cast<int>(device_call(request, &to, sizeof to, nullptr, 0, true));
+}
+
+SHIM_EXPORT int accept4(int fd, sockaddr* from, socklen_t* length, int flags) {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr)
+        return static_cast<int>(outside(fd, POLLIN, [&] { return REAL(accept4)(fd, from, length, flags); }));
+    mark_call("accept");
+    pthread_testcancel();
+    charge(page().charges.device);
+    if ((flags & ~(SOCK_NONBLOCK | SOCK_CLOEXEC)) != 0) return fail(EINVAL);
+    if (!file->stream) return fail(EOPNOTSUPP);
+    wire::SocketAddress peer;
+    const auto handle = static_cast<int>(
+        device_call(request_of(*file, wire::Op::Accept), nullptr, 0, &peer, sizeof peer, true));
+    if (handle < 0) return -1;
+    const int made = new_descriptor(handle, true, flags);
+    if (made >= 0 && !put_address(peer, from, length)) {
+        const int error = errno;
+        close(made);
+        return fail(error);
+    }
+    return made;
+}
+
+SHIM_EXPORT int accept(int fd, sockaddr* from, socklen_t* length) {
+    return accept4(fd, from, length, 0);
+}
+
+SHIM_EXPORT int shutdown(int fd, int how) noexcept {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(shutdown)(fd, how);
+    mark_call("shutdown");
+    charge(page().charges.device);
+    wire::Request request = request_of(*file, wire::Op::Shutdown);
+    request.a = static_cast<std::uint32_t>(how);
+    return static_cast<int>(device_call(request));
+}
+
+namespace {
+int name_of_end(OpenFile& file, bool peer, sockaddr* name, socklen_t* length) {
+    charge(page().charges.device);
+    wire::Request request = request_of(file, wire::Op::SocketName);
+    request.a = peer ? 1 : 0;
+    wire::SocketAddress address;
+    if (device_call(request, nullptr, 0, &address, sizeof address) < 0) return -1;
+    if (name == nullptr || length == nullptr) return fail(EFAULT);
+    return put_address(address, name, length) ? 0 : -1;
+}
+}  // namespace
+
+SHIM_EXPORT int getsockname(int fd, sockaddr* name, socklen_t* length) noexcept {
+    OpenFile* file = socket_file(fd);
+    return file != nullptr ? name_of_end(*file, false, name, length) : REAL(getsockname)(fd, name, length);
+}
+
+SHIM_EXPORT int getpeername(int fd, sockaddr* name, socklen_t* length) noexcept {
+    OpenFile* file = socket_file(fd);
+    return file != nullptr ? name_of_end(*file, true, name, length) : REAL(getpeername)(fd, name, length);
+}
+
+SHIM_EXPORT int setsockopt(int fd, int level, int name, const void* value, socklen_t length) noexcept {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(setsockopt)(fd, level, name, value, length);
+    mark_call("setsockopt");
+    charge(page().charges.device);
+    char bytes[64] = {};
+    const std::size_t size = std::min<std::size_t>(length, sizeof bytes);
+    if (static_cast<int>(length) < 0) return fail(EINVAL);
+    if (!copy_from_program(bytes, value, size)) return -1;
+    wire::Request request = request_of(*file, wire::Op::SetOption);
+    request.a = static_cast<std::uint32_t>(level);
+    request.b = static_cast<std::uint32_t>(name);
+    const auto result = static_cast<int>(device_call(request, bytes, size));
+    if (result < 0 && errno == ENOPROTOOPT)
+        note("the socket option %d of level %d is not carried by the network", name, level);
+    return result;
+}
+
+SHIM_EXPORT int getsockopt(int fd, int level, int name, void* value, socklen_t* length) noexcept {
+    OpenFile* file = socket_file(fd);
+    if (file == nullptr) return REAL(getsockopt)(fd, level, name, value, length);
+    mark_call("getsockopt");
+    charge(page().charges.device);
+    socklen_t room = 0;
+    if (!get_from_program(room, length)) return -1;
+    if (static_cast<int>(room) < 0) return fail(EINVAL);
+    wire::Request request = request_of(*file, wire::Op::GetOption);
+    request.a = static_cast<std::uint32_t>(level);
+    request.b = static_cast<std::uint32_t>(name);
+    char bytes[256] = {};
+    std::size_t size = 0;
+    if (device_call(request, nullptr, 0, bytes, sizeof bytes, false, &size) < 0) return -1;
+    size = std::min<std::size_t>(size, room);
+    if (!copy_to_program(value, bytes, size)) return -1;
+    return put_to_program(length, static_cast<socklen_t>(size)) ? 0 : -1;
+}

@@ -1,0 +1,46 @@
+#pragma once
+// Sockets of a board that is on a network: descriptors of the node's network stack. Behind each lies a socket
+// of the host that is connected to nothing. On a board without a network, and for other families than IPv4,
+// sockets are the host's.
+
+#include "linuxboard/shim/preload/files/open_file.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace puckloop::shim {
+
+/// The board is on a network, and this process is conducted.
+bool networked();
+/// The socket behind a descriptor, or nullptr.
+OpenFile* socket_file(int fd);
+
+/// read(), write() and their kin on a socket, with the flags of recv() and send().
+std::int64_t read_socket(OpenFile& file, void* buffer, std::size_t size, int flags);
+std::int64_t write_socket(OpenFile& file, const void* data, std::size_t size, int flags);
+int socket_ioctl(OpenFile& file, unsigned long request, void* argument);
+
+/// What a socket's call sends, from a program's or this library's memory; `to` may be nullptr.
+std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int flags,
+                        const wire::SocketAddress* to);
+
+/// sendfile() to the socket `to`.
+std::int64_t send_file(int to, int from, off_t* offset, std::size_t size);
+
+/// A name on the network, without regard to case; 0: unknown. "localhost" and the board's own name are known.
+std::uint32_t address_of_name(const char* name);
+/// The name of an address, or nullptr.
+const char* name_of_address(std::uint32_t address);
+/// "10.0.0.1" and what else inet_aton() takes.
+bool is_numeric(const char* text, std::uint32_t& address);
+
+/// A descriptor of "/etc/hosts" and "/etc/resolv.conf" as they are on the network, -1 for another path.
+int open_network_file(const char* path);
+
+// interface_calls.cpp
+constexpr int kLoopbackIndex = 1, kWirelessIndex = 2;
+
+}  // namespace puckloop::shim

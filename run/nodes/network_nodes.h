@@ -1,0 +1,17 @@
+#pragma once
+// The network of a run: its node, the hosts on it, and what Linux boards know of it.
+
+#include "run/description/run_request.h"
+#include "run/description/run_setup.h"
+
+#include <string>
+
+namespace puckloop::tools {
+
+/// Puts the program of `computer`, a robot or a host, on the scenario's network, if there is one.
+void join_network(const RunSetup& setup, const std::string& computer, LinuxProgram& program);
+
+/// Network, hosts and links. After the robots. Throws InputError.
+void add_network(RunSetup& setup, const RunRequest& request);
+
+}  // namespace puckloop::tools

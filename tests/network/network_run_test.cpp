@@ -1,0 +1,339 @@
+// Runs with a network: programs that know of no emulator between robots and hosts, the same in every
+// placement; what a lossy network does to them; bad input.
+
+#include "tests/end_to_end/load.h"
+#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/workbench.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace puckloop::tests;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kPython = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+const std::string kPrograms = PUCKLOOP_SOURCE "/tests/network/programs/";
+
+std::string list_of(const Words& words) {
+    return fmt::format("[\"{}\"]", fmt::join(words, "\", \""));
+}
+std::string python(const std::string& file, const Words& more = {}) {
+    Words words{kPython, "-B", "-S", "-E", kPrograms + file};
+    words.insert(words.end(), more.begin(), more.end());
+    return list_of(words);
+}
+
+/// A scenario of hosts alone: name and program of each.
+std::string hosts(const std::vector<std::pair<std::string, std::string>>& programs,
+                  const std::string& duration, const std::string& network = "") {
+    std::string text = fmt::format(
+        "[run]\nduration = \"{}\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n[network]\n{}\n", duration, network);
+    for (const auto& [name, program] : programs)
+        text += fmt::format("[[host]]\nname = \"{}\"\nprogram = {}\n", name, program);
+    return text;
+}
+
+std::string log_of(const Workbench& bench, const std::string& run, const std::string& node) {
+    std::ifstream in(bench.out(run) / (node + ".linux.log"));
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+        ++found;
+    return found;
+}
+
+/// Runs the scenario in every placement, and once beside other work; all are the same.
+void check_everywhere(const Workbench& bench, const fs::path& file) {
+    const std::vector<Words> ways{
+        {"--in-process"}, {}, {"--in-process", "--threads", "2"}, {"--in-process", "--threads", "4"}};
+    for (std::size_t i = 0; i <= ways.size(); ++i) {
+        Words words{file.string()};
+        const Words& way = ways[i % ways.size()];
+        words.insert(words.end(), way.begin(), way.end());
+        const Load load(i == ways.size() ? 3 : 0);
+        const Ended ended = bench.run(fmt::format("o{}", i), words);
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        if (i > 0) check_same_run(bench, "o0", fmt::format("o{}", i));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file("calls.toml", hosts({{"alpha", python("calls.py")}}, "5 s"));
+    const Ended ended = bench.run("o", {file, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    const std::string log = log_of(bench, "o", "alpha");
+    Process host({kPython, "-B", "-S", "-E", kPrograms + "calls.py"}, bench.folder());
+    const Ended real = host.wait();
+    INFO(real.err);
+    const std::string common = "\ncommon\n";
+    REQUIRE(log.find(common) != std::string::npos);
+    CHECK(log.substr(log.find(common)) == real.out.substr(real.out.find(common)));
+    for (const char* line : {"host alpha 10.0.0.254\n", "unknown gaierror -2\n", "wlan0 10.0.0.254\n",
+                             "raw EPERM\n", "packet EPERM\n", "six EAFNOSUPPORT\n", "outside ENETUNREACH\n"})
+        CHECK(log.find(line) != std::string::npos);
+    const auto warnings = bench.report("o")["nodes"]["alpha.linux"]["warnings"];
+    CHECK(warnings.size() == 3);  // the name, raw sockets, the family: each once
+}
+
+TEST_CASE("robots talk to each other and to a server by Python's sockets, the same in every placement",
+          "[network]") {
+    const Workbench bench;
+    std::string text = hosts({{"server", python("swarm_server.py")}}, "1.6 s");
+    for (int i = 0; i < 3; ++i)
+        text += fmt::format("[[robot]]\nposition = [\"{} cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n"
+                            "[robot.linux]\nprogram = {}\n",
+                            20 * i - 20, python("swarm_robot.py"));
+    check_everywhere(bench, bench.file("swarm.toml", text));
+    for (int i = 0; i < 3; ++i) {
+        const std::string log = log_of(bench, "o0", fmt::format("robot{}", i));
+        INFO(log);
+        CHECK(log.find(fmt::format("robot{} 10.0.0.{}", i, i + 1)) == 0);
+        CHECK(count(log, "heard ") == 2 * 5);  // five calls of each of the others
+        CHECK(log.find("server answers 5\n") != std::string::npos);
+        CHECK(log.find("sensors 72\n") != std::string::npos);  // beside them the serial port
+    }
+    CHECK(count(log_of(bench, "o0", "server"), "robot") == 15);
+    const auto network = bench.report("o0")["nodes"]["network"]["stations"];
+    CHECK(network["server"]["address"] == "10.0.0.254");
+    CHECK(network["robot0"]["packets_sent"] > 5);
+}
+
+TEST_CASE("asyncio: many connections, datagrams, time-outs beside each other", "[network]") {
+    const Workbench bench;
+    check_everywhere(
+        bench,
+        bench.file("aio.toml",
+                   hosts({{"server", python("aio_server.py")}, {"client", python("aio_client.py")}}, "2 s")));
+    const std::string client = log_of(bench, "o0", "client");
+    INFO(client);
+    CHECK(count(client, "you said") == 15);
+    CHECK(count(client, "echo") == 1);
+    CHECK(client.find("timeout 0.5\n") != std::string::npos);
+    CHECK(client.find("Connect call failed") != std::string::npos);
+    CHECK(count(log_of(bench, "o0", "server"), "tick") == 7);
+}
+
+TEST_CASE("Boost.Asio: edge-triggered, a resolver's thread, timers", "[network]") {
+    const Workbench bench;
+    const std::string program = PUCKLOOP_ASIO_TALK;
+    check_everywhere(
+        bench,
+        bench.file("asio.toml", hosts({{"server", list_of({program, "server", "7000", "3"})},
+                                       {"one", list_of({program, "client", "server", "7000", "one"})},
+                                       {"two", list_of({program, "client", "10.0.0.254", "7000", "two"})},
+                                       {"three", list_of({program, "client", "server", "7000", "three"})},
+                                       {"lost", list_of({program, "client", "nobody", "7000", "lost"})}},
+                                      "2 s")));
+    CHECK(log_of(bench, "o0", "two") == "got two 0\ngot two 1\ngot two 2\n");
+    CHECK(log_of(bench, "o0", "lost") == "Host not found (authoritative)\n");
+    const std::string server = log_of(bench, "o0", "server");
+    INFO(server);
+    CHECK(count(server, "line ") == 9);
+    CHECK(count(server, "gone: End of file") == 3);
+    CHECK(count(server, "ticks ") == 1);
+    // Nobody spins on a socket that has nothing new.
+    CHECK(bench.report("o0")["nodes"]["server.linux"]["requests"] < 3000);
+}
+
+TEST_CASE("nc on both ends", "[network]") {
+    if (!fs::exists("/bin/nc") && !fs::exists("/usr/bin/nc")) {
+        WARN("there is no nc: skipped");
+        return;
+    }
+    const Workbench bench;
+    std::string text = hosts({{"server", R"(["nc", "-l", "-p", "7000"])"},
+                              {"client", R"(["sh", "-c", "echo by nc | nc -N server 7000; echo $?"])"}},
+                             "2 s");
+    text += "start = \"0.5 s\"\n";
+    check_everywhere(bench, bench.file("nc.toml", text));
+    CHECK(log_of(bench, "o0", "server") == "by nc\n");
+    CHECK(log_of(bench, "o0", "client") == "0\n");
+}
+
+TEST_CASE("a lossy network shows as retransmission and time, not as wrong data", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file(
+        "bulk.toml", hosts({{"server", python("bulk_server.py")}, {"client", python("bulk_client.py")}},
+                           "30 s", "mode = \"fixed\"\nlatency = \"2 ms\"\nrate = \"8 Mbit/s\""));
+    const auto seconds = [&](const std::string& run, const Words& more) {
+        Words words{file.string(), "--in-process"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ended ended = bench.run(run, words);
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        const std::string log = log_of(bench, run, "client");
+        INFO(log);
+        REQUIRE(log.starts_with("same True "));
+        return std::stod(log.substr(10));
+    };
+    const double sound = seconds("sound", {});
+    // 500,000 octets in 343 segments of 1500 at 8 Mbit/s, and an acknowledgement of 40 for two.
+    CHECK(sound == Approx(343 * 1500 * 8 / 8e6 + 171 * 40 * 8 / 8e6).epsilon(0.1));
+    const auto tcp = [&](const std::string& run) {
+        return bench.report(run)["nodes"]["client.linux"]["network"]["tcp"];
+    };
+    CHECK(tcp("sound")["retransmitted"] == 0);
+    const Words loss{"--fault", "loss node=network probability=0.03 name=lossy"};
+    const double lossy = seconds("lossy", loss);
+    CHECK(lossy > 1.2 * sound);
+    CHECK(tcp("lossy")["retransmitted"] > 5);
+    CHECK(seconds("again", loss) == lossy);
+    check_same_run(bench, "lossy", "again");
+    const Ended decoded =
+        bench.puckloop({"trace", "decode", bench.out("lossy").string(), "--protocol", "ip"});
+    CHECK(decoded.status == 0);
+    CHECK(decoded.out.find("ip: TCP 10.0.0.253:") != std::string::npos);
+    const auto fault = bench.report("lossy")["faults"][0];
+    CHECK(fault["fired"] > 5);
+    CHECK(fault["firings"][0]["what"].get<std::string>().find("TCP 10.0.0.") != std::string::npos);
+    const double cut =
+        seconds("cut", {"--fault", "partition node=network begin=300ms end=1300ms group=client"});
+    CHECK(cut > sound + 0.9);
+    CHECK(seconds("slow", {"--fault", "rate node=network rate=1e6"}) > 7 * sound);
+    for (const char* kind :
+         {"duplicate node=network probability=0.1", "corrupt node=network probability=0.02",
+          "reorder node=network probability=0.05", "delay node=network delay=5ms jitter=5ms"})
+        CHECK(seconds("other", {"--fault", kind}) >= 0.99 * sound);
+    // As pcapng, and what tshark makes of it.
+    const Ended exported = bench.puckloop({"trace", "export", bench.out("lossy").string(), "--format",
+                                           "pcapng", "--output", (bench.folder() / "lossy.pcapng").string()});
+    INFO(exported.err);
+    REQUIRE(exported.status == 0);
+    if (!fs::exists("/usr/bin/tshark")) return;
+    Process tshark({"tshark", "-r", (bench.folder() / "lossy.pcapng").string(), "-Y",
+                    "_ws.malformed or ip.checksum.status == 0 or tcp.checksum.status == 0", "-o",
+                    "tcp.desegment_tcp_streams:FALSE", "-o", "ip.check_checksum:TRUE", "-o",
+                    "tcp.check_checksum:TRUE"},
+                   bench.folder());
+    const Ended read = tshark.wait();
+    CHECK(read.status == 0);
+    CHECK(read.out.empty());
+}
+
+TEST_CASE("the network manager passes messages by number, as far as range and hops allow", "[network]") {
+    const Workbench bench;
+    const auto member = [&](const std::string& place, const std::string& line) {
+        return python("member.py", {place, line});
+    };
+    const auto text = [&](const Words& options) {
+        Words manager{PUCKLOOP_NETMANAGER, "--robot",     "10.0.0.11=1",
+                      "--robot",           "10.0.0.12=2", "--robot",
+                      "10.0.0.13=3",       "--log",       (bench.folder() / "manager.csv").string()};
+        manager.insert(manager.end(), options.begin(), options.end());
+        std::string all = hosts({{"manager", list_of(manager)}}, "2 s");
+        const std::vector<std::pair<std::string, std::string>> members{
+            {"0,0", "-1 from one"}, {"1,0", "3 to three"}, {"2,0", "1 to one"}};
+        for (std::size_t i = 0; i < members.size(); ++i)
+            all += fmt::format("[[host]]\nname = \"m{}\"\naddress = \"10.0.0.{}\"\nprogram = {}\n", i + 1,
+                               i + 11, member(members[i].first, members[i].second));
+        return all;
+    };
+    check_everywhere(bench, bench.file("manager.toml", text({})));
+    CHECK(log_of(bench, "o0", "m1") == "3 to one\n");
+    CHECK(log_of(bench, "o0", "m2") == "1 from one\n");
+    CHECK(log_of(bench, "o0", "m3") == "1 from one\n2 to three\n");
+    CHECK(count(text_of(bench.folder() / "manager.csv"), ",passed,") == 4 + 3);  // and who is there already hears "here"
+    const auto run = [&](const Words& options) {
+        const Ended ended = bench.run("limited", {bench.file("limited.toml", text(options)), "--in-process"});
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+    };
+    run({"--range", "1.5"});
+    CHECK(log_of(bench, "limited", "m1").empty());
+    CHECK(log_of(bench, "limited", "m3") == "2 to three\n");
+    CHECK(count(text_of(bench.folder() / "manager.csv"), ",too_far,3,1,") == 1);
+    run({"--range", "1.5", "--hops", "2", "--hop-delay", "0.05"});
+    CHECK(log_of(bench, "limited", "m1") == "3 to one\n");
+    CHECK(log_of(bench, "limited", "m3") == "2 to three\n1 from one\n");  // one hop, then two
+}
+
+TEST_CASE("a server drives a robot through puckloop-forward", "[network]") {
+    const Workbench bench;
+    const std::string text =
+        hosts({{"server", python("remote_driver.py")}}, "2 s") +
+        fmt::format("[[robot]]\nposition = [\"0 cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n"
+                    "[robot.linux]\nstart = \"100 ms\"\nprogram = {}\n",
+                    list_of({PUCKLOOP_FORWARD, "--server", "server:7700"}));
+    check_everywhere(bench, bench.file("forward.toml", text));
+    CHECK(log_of(bench, "o0", "server") == "robot 10.0.0.1\nproximity 8\ndriven\n");
+    const std::string robot = log_of(bench, "o0", "robot0");
+    INFO(robot);
+    CHECK(robot.starts_with("connected with server:7700\n"));
+    CHECK(journey(bench.csv("o0", "trajectory.csv")).length > 0.01);
+}
+
+TEST_CASE("manager and forwarder refuse wrong use in one line, with status 2", "[network]") {
+    const Workbench bench;
+    const auto check = [&](const Words& words, const std::string& what) {
+        Process process(words, bench.folder());
+        const Ended ended = process.wait(10.0);
+        INFO(ended.err);
+        CHECK(ended.status == 2);
+        CHECK(ended.error_lines() == 1);
+        CHECK(ended.err.find(what) != std::string::npos);
+    };
+    check({PUCKLOOP_NETMANAGER, "--port", "0"}, "--port: '0'");
+    check({PUCKLOOP_NETMANAGER, "--range", "far"}, "--range: 'far'");
+    check({PUCKLOOP_NETMANAGER, "--robot", "10.0.0=1"}, "is not ADDRESS=NUMBER");
+    check({PUCKLOOP_NETMANAGER, "--port", "0x1"}, "--port");
+    check({PUCKLOOP_NETMANAGER, "more"}, "'more' is not an option");
+    check({PUCKLOOP_NETMANAGER, "--log", "/nowhere/log.csv"}, "/nowhere/log.csv");
+    check({PUCKLOOP_FORWARD}, "--server HOST:PORT is missing");
+    check({PUCKLOOP_FORWARD, "--server", "server"}, "is not HOST:PORT");
+    check({PUCKLOOP_FORWARD, "--server", "a:1", "--retry", "0"}, "--retry");
+    check({PUCKLOOP_FORWARD, "--server", "a:1", "--tty", "/dev/null"}, "/dev/null");
+}
+
+TEST_CASE("a scenario whose network cannot be is one line with its place, and status 2", "[network]") {
+    const Workbench bench;
+    const auto check = [&](const std::string& network, const std::string& host, const Words& words) {
+        const std::string text = "[run]\nduration = \"1 s\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n" + network +
+                                 "[[host]]\nprogram = [\"true\"]\n" + host;
+        const auto file = bench.file("bad.toml", text);
+        check_one_line(bench.run("o", {file}), 2, words);
+    };
+    const std::string fine = "[network]\n";
+    check("", "", {"bad.toml", "line 5", "a host without a network"});
+    check("[network]\naddress = \"10.0.0.0\"\n", "", {"line 6", "is no network"});
+    check("[network]\naddress = \"10.0.0.0/33\"\n", "", {"line 6", "33 bits"});
+    check("[network]\naddress = \"10.0.0.5/24\"\n", "", {"line 6", "10.0.0.0/24"});
+    check("[network]\nlatency = \"0 s\"\n", "", {"line 6", "latency is out of range"});
+    check("[network]\nmode = \"warp\"\n", "", {"line 6", "perfect", "fixed"});
+    check("[network]\nrate = \"1 Mbit/s\"\n", "", {"line 6", "a perfect network has no rate"});
+    check("[network]\nmode = \"fixed\"\nrate = \"fast\"\n", "", {"line 7", "is no rate"});
+    check("[network]\nmode = \"fixed\"\nrate = \"1 bit/s\"\n", "", {"line 7", "rate is out of range"});
+    check(fine, "address = \"10.0.1.1\"\n", {"line 6", "host0", "10.0.1.1 is none of a computer"});
+    check(fine, "address = \"10.0.0.255\"\n", {"10.0.0.255 is none of a computer"});
+    check(fine, "address = \"ten\"\n", {"line 8", "is no address"});
+    check(fine,
+          "address = \"10.0.0.7\"\n[[host]]\nname = \"b\"\nprogram = [\"true\"]\naddress = \"10.0.0.7\"\n",
+          {"line 9", "host0 has the address 10.0.0.7 already"});
+    check(fine, "[[host]]\nname = \"host0\"\nprogram = [\"true\"]\n",
+          {"something else has the name 'host0'"});
+    check("[network]\naddress = \"10.0.0.0/30\"\n",
+          "[[host]]\nprogram = [\"true\"]\n[[host]]\nprogram = [\"true\"]\n", {"no address left"});
+    check(fine, "[[fault]]\nnode = \"network\"\nkind = \"loss\"\nfrom = \"nobody\"\n",
+          {"'nobody' is at no end of network"});
+    check(fine, "[[fault]]\nnode = \"network\"\nkind = \"partition\"\ngroup = \"nobody\"\n",
+          {"there is no 'nobody' on the network"});
+    check(fine, "[[fault]]\nnode = \"network\"\nkind = \"delay\"\ndelay = \"1 ms\"\njitter = \"2 ms\"\n",
+          {"the jitter is larger than the delay"});
+}

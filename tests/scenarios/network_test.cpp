@@ -1,0 +1,81 @@
+// [network], [[host]], and who has which address.
+
+#include "base/error.h"
+#include "scenarios/reader/network_tables.h"
+#include "tests/scenarios/temporary_file.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop;
+using namespace puckloop::scenarios;
+
+namespace {
+
+const std::string kBegin = "[run]\nduration = \"5 s\"\n[arena]\nsize = [\"9 m\", \"9 m\"]\n";
+
+std::string robot(int number, const std::string& linux_keys) {
+    return fmt::format("[[robot]]\nposition = [\"{} cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n{}",
+                       20 * number, linux_keys.empty() ? "" : "[robot.linux]\n" + linux_keys);
+}
+const std::string kProgram = "program = [\"true\"]\n";
+
+std::vector<std::string> computers(const std::string& text) {
+    const TemporaryFile file(text);
+    std::vector<std::string> lines;
+    for (const NetworkComputer& one : computers_of(read_scenario(file.path())))
+        lines.push_back(one.name + " " + one.address);
+    return lines;
+}
+
+using Lines = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("robots' addresses follow their numbers, hosts come from above", "[network]") {
+    const std::string robots = robot(0, kProgram) + robot(1, "") + robot(2, kProgram);
+    const std::string hosts = "[[host]]\n" + kProgram + "[[host]]\nname = \"pc\"\n" + kProgram;
+    CHECK(computers(kBegin + robots).empty());
+    CHECK(computers(kBegin + "[network]\n" + robots + hosts) ==
+          Lines{"robot0 10.0.0.1", "robot2 10.0.0.3", "host0 10.0.0.254", "pc 10.0.0.253"});
+    CHECK(computers(kBegin + "[network]\naddress = \"192.168.8.0/22\"\n" +
+                    robot(0, kProgram + "address = \"192.168.9.0\"\n") + hosts) ==
+          Lines{"robot0 192.168.9.0", "host0 192.168.11.254", "pc 192.168.11.253"});
+}
+
+TEST_CASE("what the network's tables set", "[network]") {
+    const TemporaryFile file(
+        kBegin +
+        "[network]\nmode = \"fixed\"\nlatency = \"3 ms\"\nrate = \"2.5 Mbit/s\"\nqueue = 7\n"
+        "[[host]]\nname = \"pc\"\nstart = \"2 s\"\n" +
+        kProgram);
+    const Scenario scenario = read_scenario(file.path());
+    REQUIRE(scenario.network);
+    CHECK(scenario.network->latency == Approx(3e-3));
+    CHECK(scenario.network->rate == Approx(2.5e6));
+    CHECK(scenario.network->queue == 7);
+    REQUIRE(scenario.hosts.size() == 1);
+    CHECK(scenario.hosts[0].board.start == Approx(2.0));
+    CHECK(scenario.hosts[0].board.hostname == "pc");
+    const TemporaryFile plain(kBegin + "[network]\n[[host]]\n" + kProgram);
+    CHECK(read_scenario(plain.path()).network->rate == 0.0);
+}
+
+TEST_CASE("a rate is a number and its unit", "[network]") {
+    CHECK(parse_rate("11 Mbit/s") == 11e6);
+    CHECK(parse_rate("0.5kbit/s") == 500.0);
+    CHECK(parse_rate("1e3 bit/s") == 1e3);
+    for (const char* bad : {"", "11", "Mbit/s", "11 MB/s", "11 Mbit/s ", "11 mbit/s", "x 1 bit/s"})
+        CHECK_FALSE(parse_rate(bad));
+}
+
+TEST_CASE("more computers than addresses, and an address without a network", "[network]") {
+    std::string many = kBegin + "[network]\naddress = \"10.1.0.0/29\"\n";
+    for (int i = 0; i < 6; ++i)
+        many += robot(i, kProgram);
+    CHECK(computers(many).size() == 6);
+    CHECK_THROWS_WITH(computers(many + robot(6, kProgram)), Catch::Contains("no address left"));
+    CHECK_THROWS_WITH(computers(many + "[[host]]\n" + kProgram),
+                      Catch::Contains("robot5 has the address 10.1.0.6 already"));
+    CHECK_THROWS_WITH(computers(kBegin + robot(0, kProgram + "address = \"10.0.0.1\"\n")),
+                      Catch::Contains("an address without a network"));
+}
