@@ -188,7 +188,7 @@ std::vector<ParameterInfo> build_table() {
         {"ir.quality", "1", 1, {7.0}, 0.0, 100.0, AT(ir.quality), "? of the demodulator's band pass; the firmware's carrier is 6 % off: response 0.77"},
         {"ir.threshold", "1", 1, {1.0}, 0.01, 100.0, AT(ir.threshold), "of the demodulator, in units of the carrier at ir.reach"},
         {"ir.gain_share", "1", 1, {0.0}, 0.0, 1.0, AT(ir.gain_share), "? carriers weaker than this share of the strongest are not seen while it is on (gain control); 0: none"},
-        {"ir.gain_hold", "s", 1, {300e-6}, 1e-6, 1.0, AT(ir.gain_hold), "? how long the strongest carrier holds the gain down after its end; longer than two chips, or it comes back within a frame"},
+        {"ir.gain_hold", "s", 1, {300e-6}, 1e-6, 1.0, AT(ir.gain_hold), "? how long the strongest carrier holds the gain down after its end; less than two chips lets it come back within a frame"},
         {"ir.delay_on", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ir.delay_on), "? 5-20 us; also what lets boards run ahead of each other"},
         {"ir.delay_off", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ir.delay_off), "as delay_on; their difference distorts pulses and loses frames"},
         {"ir.min_burst", "s", 1, {10e-6}, 0.0, 1e-3, AT(ir.min_burst), "? shorter bursts are not seen; at most 0.9 delay_on"},

@@ -7,9 +7,9 @@
 // rises shows ir.level_delay later; one that falls does once it has been lower for ir.level_hold, because the
 // board's peak detector keeps the highest anyway.
 //
-// Gain control: a demodulator's threshold is ir.threshold or ir.gain_share of the strongest carrier of the
-// last ir.gain_hold, whichever is higher, so that a near board is heard through the light of far ones
-// (capture). The gain follows at once and comes back at once when the hold is over.
+// Gain control: a demodulator's threshold is ir.threshold or ir.gain_share of the strongest carrier,
+// whichever is higher, so that a near board is heard through the light of far ones (capture). A carrier
+// counts as the strongest until ir.gain_hold after it became weaker; what is there then takes its place.
 //
 // Deviation: threshold without hysteresis.
 

@@ -29,14 +29,16 @@ linuxboard::LinuxSpec spec_for(const std::string& name, std::vector<std::string>
 }
 
 Bench::Bench(linuxboard::LinuxSpec spec, Time slice, std::unique_ptr<linuxboard::Scenery> scenery)
-    : spec_(spec), node_(std::move(spec), std::move(scenery)), slice_(slice) {}
+    : spec_(spec), log_file_{spec_.log}, node_(std::move(spec), std::move(scenery)), slice_(slice) {}
 
 void Bench::change(Time time, std::uint16_t id, double value) {
     queue({time, linuxboard::kCameraPort, Signal{id, value}});
 }
 
-Bench::~Bench() {
-    unlink(spec_.log.c_str());
+Bench::~Bench() = default;
+
+Bench::LogFile::~LogFile() {
+    unlink(path.c_str());
 }
 
 void Bench::queue(Message message) {

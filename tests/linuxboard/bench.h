@@ -25,7 +25,7 @@ class Bench {
     /// (without frames on the line it does not matter). `scenery`: for the spec's cameras.
     explicit Bench(linuxboard::LinuxSpec spec, cosim::Time slice = 70 * cosim::kMicrosecond,
                    std::unique_ptr<linuxboard::Scenery> scenery = nullptr);
-    ~Bench();  ///< removes the log
+    ~Bench();
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
 
@@ -57,7 +57,14 @@ class Bench {
     void queue(cosim::Message message);
     void run_ahead_in_vain();
 
+    /// Removed behind the node, whose end writes into it.
+    struct LogFile {
+        std::string path;
+        ~LogFile();
+    };
+
     linuxboard::LinuxSpec spec_;
+    LogFile log_file_;
     linuxboard::LinuxNode node_;
     cosim::Time slice_;
     cosim::Time now_ = 0;

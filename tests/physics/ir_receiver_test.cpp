@@ -116,3 +116,64 @@ TEST_CASE("nothing is released that could still change") {
     REQUIRE(bench.got.size() == 1);  // decided at 1010, due at 1020
     check_output(bench.got[0], 1020, 3, 1.0);
 }
+
+namespace {
+
+IrParameters with_gain_control() {
+    IrParameters p = parameters();
+    p.gain_share = 0.5;
+    p.gain_hold = 300e-6;
+    return p;
+}
+
+}  // namespace
+
+TEST_CASE("a strong carrier hides weak ones until its hold is over") {
+    Bench bench(with_gain_control());
+    bench.see(1000, 4.0F);
+    bench.see(1500, 1.9F);  // less than half of it
+    CHECK(bench.receiver.next_output() <= 1508 * kMicrosecond);
+    bench.until(1700);
+    REQUIRE(bench.got.size() == 2);
+    check_output(bench.got[0], 1020, 3, 1.0);
+    check_output(bench.got[1], 1508, 3, 0.0);
+    CHECK(bench.receiver.next_output() <= 1820 * kMicrosecond);
+    bench.until(2000);
+    REQUIRE(bench.got.size() == 3);
+    check_output(bench.got[2], 1820, 3, 1.0);
+
+    // Half of it is enough at once; what is alone needs the plain threshold.
+    Bench half(with_gain_control());
+    half.see(1000, 4.0F);
+    half.see(1500, 2.0F);
+    half.until(2000);
+    CHECK(half.got.size() == 1);
+    Bench alone(with_gain_control());
+    alone.see(1000, 1.0F);
+    alone.until(1100);
+    REQUIRE(alone.got.size() == 1);
+    check_output(alone.got[0], 1020, 3, 1.0);
+}
+
+TEST_CASE("a frame's dark chips are shorter than the hold: a weak sender stays hidden") {
+    Bench bench(with_gain_control());
+    for (Time chip = 1000; chip < 3000; chip += 200) {  // strong on, weak alone, by turns
+        bench.see(chip, 5.0F);
+        bench.see(chip + 100, 1.5F);
+    }
+    bench.until(3000);
+    REQUIRE(bench.got.size() == 20);
+    for (std::size_t i = 0; i < bench.got.size(); ++i)
+        CHECK(bench.got[i].value == (i % 2 == 0 ? 1.0 : 0.0));
+    bench.until(3300);  // the hold ends at 3200
+    REQUIRE(bench.got.size() == 21);
+    check_output(bench.got.back(), 3220, 3, 1.0);
+}
+
+TEST_CASE("without gain control nothing but the threshold counts") {
+    Bench bench(parameters());
+    bench.see(1000, 40.0F);
+    bench.see(1500, 1.0F);
+    bench.until(3000);
+    CHECK(bench.got.size() == 1);
+}

@@ -119,10 +119,14 @@ FaultPlace find_place(Reader& reader, const Scenario& scenario) {
                                                 names_of(scenario, true)));
     const char* const key = by_node ? "node" : "link";
     const std::string name = reader.text(key);
-    for (const FaultPlace& place : fault_places(scenario))
+    const std::vector<FaultPlace> places = fault_places(scenario);
+    std::vector<std::string_view> known;
+    for (const FaultPlace& place : places) {
         if (place.is_node == by_node && place.name == name) return place;
+        if (place.is_node == by_node) known.push_back(place.name);
+    }
     reader.fail(key, fmt::format("there is no {} '{}' that can have a fault", key, name),
-                names_of(scenario, by_node));
+                names_of(scenario, by_node) + did_you_mean(name, known));
 }
 
 void check_end(Reader& reader, const char* key, const std::string& name, const FaultPlace& place) {
