@@ -90,7 +90,11 @@ TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[n
                              "raw EPERM\n", "packet EPERM\n", "six EAFNOSUPPORT\n", "outside ENETUNREACH\n"})
         CHECK(log.find(line) != std::string::npos);
     const auto warnings = bench.report("o")["nodes"]["alpha.linux"]["warnings"];
-    CHECK(warnings.size() == 3);  // the name, raw sockets, the family: each once
+    // Each once: the name, raw sockets, the family, two addresses, the port.
+    CHECK(warnings.size() == 6);
+    CHECK(std::count(warnings.begin(), warnings.end(), "the port 7100 is in use on this board") == 1);
+    CHECK(std::count(warnings.begin(), warnings.end(), "the address 192.168.7.7 is outside of the network") ==
+          1);
 }
 
 TEST_CASE("robots talk to each other and to a server by Python's sockets, the same in every placement",
@@ -250,7 +254,8 @@ TEST_CASE("the network manager passes messages by number, as far as range and ho
     CHECK(log_of(bench, "o0", "m1") == "3 to one\n");
     CHECK(log_of(bench, "o0", "m2") == "1 from one\n");
     CHECK(log_of(bench, "o0", "m3") == "1 from one\n2 to three\n");
-    CHECK(count(text_of(bench.folder() / "manager.csv"), ",passed,") == 4 + 3);  // and who is there already hears "here"
+    CHECK(count(text_of(bench.folder() / "manager.csv"), ",passed,") ==
+          4 + 3);  // and who is there already hears "here"
     const auto run = [&](const Words& options) {
         const Ended ended = bench.run("limited", {bench.file("limited.toml", text(options)), "--in-process"});
         INFO(ended.err);

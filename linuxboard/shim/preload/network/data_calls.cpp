@@ -49,7 +49,7 @@ std::int64_t send_piece(OpenFile& file, const char* data, std::size_t size, int 
     std::vector<char> all(head + size);
     std::memcpy(all.data(), to, head);
     if (size > 0) std::memcpy(all.data() + head, data, size);
-    return device_call(request, all.data(), all.size(), nullptr, 0, true);
+    return named(device_call(request, all.data(), all.size(), nullptr, 0, true), *to);
 }
 
 struct Arrived {
