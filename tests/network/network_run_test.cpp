@@ -232,6 +232,31 @@ TEST_CASE("a lossy network shows as retransmission and time, not as wrong data",
     CHECK(read.out.empty());
 }
 
+TEST_CASE("a server that is killed ends its connections, and one that is paused does not", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file(
+        "kill.toml", hosts({{"server", python("bulk_server.py")}, {"client", python("bulk_client.py")}},
+                           "3 s", "mode = \"fixed\"\nlatency = \"2 ms\"\nrate = \"8 Mbit/s\""));
+    const auto run = [&](const std::string& name, const std::string& fault, bool in_process) {
+        Words words{file.string(), "--fault", fault};
+        if (in_process) words.emplace_back("--in-process");
+        return bench.run(name, words);
+    };
+    const std::string kill = "kill node=server.linux at=400ms run=goes_on";
+    // The client's own end by the exception is the run's failure.
+    CHECK(run("killed", kill, true).status == 1);
+    CHECK(run("apart", kill, false).status == 1);
+    check_same_run(bench, "killed", "apart");
+    const std::string log = log_of(bench, "killed", "client");
+    INFO(log);
+    CHECK((log.find("ConnectionResetError") != std::string::npos ||
+           log.find("BrokenPipeError") != std::string::npos));
+    REQUIRE(run("paused", "pause node=server.linux at=400ms time=500ms", true).status == 0);
+    const std::string paused = log_of(bench, "paused", "client");
+    REQUIRE(paused.starts_with("same True "));
+    CHECK(std::stod(paused.substr(10)) > 0.54 + 0.3);
+}
+
 TEST_CASE("the network manager passes messages by number, as far as range and hops allow", "[network]") {
     const Workbench bench;
     const auto member = [&](const std::string& place, const std::string& line) {
@@ -282,6 +307,8 @@ TEST_CASE("a server drives a robot through puckloop-forward", "[network]") {
     const std::string robot = log_of(bench, "o0", "robot0");
     INFO(robot);
     CHECK(robot.starts_with("connected with server:7700\n"));
+    // Neither end spins: 500 bytes each way in pieces of the UART, and looks at time-outs.
+    CHECK(bench.report("o0")["nodes"]["robot0.linux"]["requests"] < 4000);
     CHECK(journey(bench.csv("o0", "trajectory.csv")).length > 0.01);
 }
 
