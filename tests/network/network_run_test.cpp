@@ -195,7 +195,7 @@ TEST_CASE("a lossy network shows as retransmission and time, not as wrong data",
         return bench.report(run)["nodes"]["client.linux"]["network"]["tcp"];
     };
     CHECK(tcp("sound")["retransmitted"] == 0);
-    const Words loss{"--fault", "loss node=network probability=0.03 name=lossy"};
+    const Words loss{"--fault", "loss node=network probability=0.05 name=lossy"};
     const double lossy = seconds("lossy", loss);
     CHECK(lossy > 1.2 * sound);
     CHECK(tcp("lossy")["retransmitted"] > 5);
