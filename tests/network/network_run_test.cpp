@@ -90,7 +90,11 @@ TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[n
                              "raw EPERM\n", "packet EPERM\n", "six EAFNOSUPPORT\n", "outside ENETUNREACH\n"})
         CHECK(log.find(line) != std::string::npos);
     const auto warnings = bench.report("o")["nodes"]["alpha.linux"]["warnings"];
-    CHECK(warnings.size() == 3);  // the name, raw sockets, the family: each once
+    // Each once: the name, raw sockets, the family, two addresses, the port.
+    CHECK(warnings.size() == 6);
+    CHECK(std::count(warnings.begin(), warnings.end(), "the port 7100 is in use on this board") == 1);
+    CHECK(std::count(warnings.begin(), warnings.end(), "the address 192.168.7.7 is outside of the network") ==
+          1);
 }
 
 TEST_CASE("robots talk to each other and to a server by Python's sockets, the same in every placement",
@@ -191,7 +195,7 @@ TEST_CASE("a lossy network shows as retransmission and time, not as wrong data",
         return bench.report(run)["nodes"]["client.linux"]["network"]["tcp"];
     };
     CHECK(tcp("sound")["retransmitted"] == 0);
-    const Words loss{"--fault", "loss node=network probability=0.03 name=lossy"};
+    const Words loss{"--fault", "loss node=network probability=0.05 name=lossy"};
     const double lossy = seconds("lossy", loss);
     CHECK(lossy > 1.2 * sound);
     CHECK(tcp("lossy")["retransmitted"] > 5);
@@ -228,6 +232,31 @@ TEST_CASE("a lossy network shows as retransmission and time, not as wrong data",
     CHECK(read.out.empty());
 }
 
+TEST_CASE("a server that is killed ends its connections, and one that is paused does not", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file(
+        "kill.toml", hosts({{"server", python("bulk_server.py")}, {"client", python("bulk_client.py")}},
+                           "3 s", "mode = \"fixed\"\nlatency = \"2 ms\"\nrate = \"8 Mbit/s\""));
+    const auto run = [&](const std::string& name, const std::string& fault, bool in_process) {
+        Words words{file.string(), "--fault", fault};
+        if (in_process) words.emplace_back("--in-process");
+        return bench.run(name, words);
+    };
+    const std::string kill = "kill node=server.linux at=400ms run=goes_on";
+    // The client's own end by the exception is the run's failure.
+    CHECK(run("killed", kill, true).status == 1);
+    CHECK(run("apart", kill, false).status == 1);
+    check_same_run(bench, "killed", "apart");
+    const std::string log = log_of(bench, "killed", "client");
+    INFO(log);
+    CHECK((log.find("ConnectionResetError") != std::string::npos ||
+           log.find("BrokenPipeError") != std::string::npos));
+    REQUIRE(run("paused", "pause node=server.linux at=400ms time=500ms", true).status == 0);
+    const std::string paused = log_of(bench, "paused", "client");
+    REQUIRE(paused.starts_with("same True "));
+    CHECK(std::stod(paused.substr(10)) > 0.54 + 0.3);
+}
+
 TEST_CASE("the network manager passes messages by number, as far as range and hops allow", "[network]") {
     const Workbench bench;
     const auto member = [&](const std::string& place, const std::string& line) {
@@ -250,7 +279,8 @@ TEST_CASE("the network manager passes messages by number, as far as range and ho
     CHECK(log_of(bench, "o0", "m1") == "3 to one\n");
     CHECK(log_of(bench, "o0", "m2") == "1 from one\n");
     CHECK(log_of(bench, "o0", "m3") == "1 from one\n2 to three\n");
-    CHECK(count(text_of(bench.folder() / "manager.csv"), ",passed,") == 4 + 3);  // and who is there already hears "here"
+    CHECK(count(text_of(bench.folder() / "manager.csv"), ",passed,") ==
+          4 + 3);  // and who is there already hears "here"
     const auto run = [&](const Words& options) {
         const Ended ended = bench.run("limited", {bench.file("limited.toml", text(options)), "--in-process"});
         INFO(ended.err);
@@ -277,6 +307,8 @@ TEST_CASE("a server drives a robot through puckloop-forward", "[network]") {
     const std::string robot = log_of(bench, "o0", "robot0");
     INFO(robot);
     CHECK(robot.starts_with("connected with server:7700\n"));
+    // Neither end spins: 500 bytes each way in pieces of the UART, and looks at time-outs.
+    CHECK(bench.report("o0")["nodes"]["robot0.linux"]["requests"] < 4000);
     CHECK(journey(bench.csv("o0", "trajectory.csv")).length > 0.01);
 }
 

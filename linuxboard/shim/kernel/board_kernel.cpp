@@ -134,6 +134,7 @@ void BoardKernel::call(const Request& request, std::string_view data) {
         return;
     case Op::Cancel: {
         waiting_.erase(request.thread);
+        begun_.erase(request.thread);
         adapter_.abandon(request.thread);
         return;
     }
@@ -164,6 +165,7 @@ void BoardKernel::call(const Request& request, std::string_view data) {
     }
     }
     Waiting waiting{request, std::string(data), {}, 0, now};
+    if (request.op == Op::Send && !join_pieces(request, waiting.data)) return;
     if (!faults_.empty() && suffers(waiting, now)) return;
     if (request.op == Op::Transfer) {
         submit_transfer(request, data);
@@ -490,6 +492,8 @@ void BoardKernel::forget(std::uint32_t slot) {
         adapter_.abandon(it->first);
         it = waiting_.erase(it);
     }
+    for (auto* pieces : {&begun_, &rest_})
+        std::erase_if(*pieces, [slot](const auto& one) { return slot_of(one.first) == slot; });
     std::erase_if(finished_,
                   [slot](const FinishedCall& call) { return slot_of(call.header.thread) == slot; });
 }
@@ -530,6 +534,8 @@ void BoardKernel::reset(Time now) {
     for (const auto& [thread, waiting] : waiting_)
         adapter_.abandon(thread);
     waiting_.clear();
+    begun_.clear();
+    rest_.clear();
     finished_.clear();
     resumes_ = kNever;
 }

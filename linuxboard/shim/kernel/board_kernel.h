@@ -141,6 +141,8 @@ class BoardKernel {
     void open_socket(const wire::Request& request);
     int new_socket_file(int socket);
     bool attempt_socket(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    /// False if `data` is the beginning of a datagram only.
+    bool join_pieces(const wire::Request& request, std::string& data);
     bool attempt_receive(std::uint32_t thread, Waiting& waiting, cosim::Time now, bool late);
     std::int16_t socket_events(wire::PollEntry& entry) const;
     cosim::Time socket_wake_time(const Waiting& waiting) const;
@@ -172,6 +174,7 @@ class BoardKernel {
     std::optional<NetworkStack> network_;
     std::vector<File> files_;
     std::map<std::uint32_t, Waiting> waiting_;
+    std::map<std::uint32_t, std::string> begun_, rest_;  ///< of datagrams, by thread: sent, received
     std::vector<FinishedCall> finished_;
     std::vector<cosim::UartFrame> frames_;
     std::vector<cosim::I2cPhase> phases_;

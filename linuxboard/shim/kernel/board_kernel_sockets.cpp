@@ -151,9 +151,27 @@ bool BoardKernel::attempt_socket(std::uint32_t thread, Waiting& waiting, Time no
     }
 }
 
+bool BoardKernel::join_pieces(const wire::Request& request, std::string& data) {
+    if (request.b == 1) {
+        begun_[request.thread] += data;
+        finish(request.thread, 0, 0, request.now);
+        return false;
+    }
+    if (const auto begun = begun_.extract(request.thread)) data.insert(0, begun.mapped());
+    return true;
+}
+
 bool BoardKernel::attempt_receive(std::uint32_t thread, Waiting& waiting, Time now, bool late) {
     const wire::Request& request = waiting.request;
     const int socket = socket_of(request.handle);
+    if ((request.b & wire::kReceiveRest) != 0) {
+        std::string& rest = rest_[thread];
+        std::string part = rest.substr(0, wire::kMaximumData);
+        rest.erase(0, part.size());
+        const auto count = static_cast<std::int64_t>(part.size());
+        finish(thread, count, 0, now, std::move(part));
+        return true;
+    }
     const bool peek = (request.b & wire::kReceivePeek) != 0;
     const bool all = (request.b & wire::kReceiveAll) != 0 && network_->is_stream(socket) && !peek;
     NetworkStack::Received received;
@@ -170,7 +188,12 @@ bool BoardKernel::attempt_receive(std::uint32_t thread, Waiting& waiting, Time n
     }
     const wire::SocketReceived head{as_address(received.from), static_cast<std::uint32_t>(received.size)};
     const auto size = static_cast<std::int64_t>(waiting.gathered.size());
-    finish(thread, size, 0, now, octets_of(head) + waiting.gathered);
+    std::string answer = octets_of(head) + waiting.gathered;
+    if (answer.size() > wire::kMaximumData) {
+        rest_[thread] = answer.substr(wire::kMaximumData);
+        answer.resize(wire::kMaximumData);
+    }
+    finish(thread, size, 0, now, std::move(answer));
     return true;
 }
 

@@ -165,7 +165,7 @@ std::optional<ProcessEvent> Process::try_hear(double watchdog, bool wait, wire::
     silence_ = {};
     if (host_ == 0) host_ = entry_.host;
     request = channel_.request;
-    data.assign(channel_.request_data, std::min(channel_.request_size, wire::kMaximumSocketData));
+    data.assign(channel_.request_data, std::min(channel_.request_size, wire::kMaximumData));
     constexpr std::uint32_t kMostThreads = 0xffff;
     request.thread &= kMostThreads;
     if (request.op == wire::Op::Exit) {

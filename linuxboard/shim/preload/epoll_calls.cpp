@@ -16,6 +16,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
 using namespace puckloop::shim;
 
@@ -29,13 +30,13 @@ struct Watch {
     bool armed = false;
     std::uint32_t seen = 0;  ///< of an edge-triggered one: its activity when it was reported
 };
+int watch_end = 0;  ///< no watch lies behind
 bool watches_outside = false;
 Watch watches[kMostWatches];
 
 Watch* find_watch(int epoll_fd, int fd) {
-    for (Watch& watch : watches) {
-        if (watch.epoll_fd == epoll_fd && watch.fd == fd) return &watch;
-    }
+    for (int i = 0; i < watch_end; ++i)
+        if (watches[i].epoll_fd == epoll_fd && watches[i].fd == fd) return &watches[i];
     return nullptr;
 }
 
@@ -54,6 +55,7 @@ int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) 
         return -1;
     }
     if (watch == nullptr) watch = find_watch(-1, -1);
+    if (watch == nullptr && watch_end < kMostWatches) watch = &watches[watch_end++];
     if (watch == nullptr) {
         errno = ENOSPC;
         return -1;
@@ -92,8 +94,8 @@ bool is_epoll(int fd) {
 
 namespace puckloop::shim {
 void drop_watches(int fd) {
-    for (Watch& watch : watches)
-        if (watch.fd == fd) watch = {};
+    for (int i = 0; i < watch_end; ++i)
+        if (watches[i].fd == fd) watches[i] = {};
 }
 
 bool epoll_watches_outside() {
@@ -133,22 +135,23 @@ static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline
         return -1;
     }
     if (!is_epoll(epoll_fd)) return -1;
-    PollItem entries[kMostWatches + 1];
-    nfds_t count = 0;
-    entries[count++] = {epoll_fd, POLLIN, 0, 0};
-    for (const Watch& watch : watches) {
+    std::vector<PollItem> entries{{epoll_fd, POLLIN, 0, 0}};
+    for (int i = 0; i < watch_end; ++i) {
+        const Watch& watch = watches[i];
         if (watch.epoll_fd != epoll_fd || !watch.armed || open_file(watch.fd) == nullptr) continue;
         constexpr std::uint32_t kKnown = POLLIN | POLLOUT | POLLPRI | POLLRDNORM | POLLWRNORM | POLLRDHUP;
-        entries[count++] = {watch.fd, static_cast<short>(watch.event.events & kKnown), 0, watch.seen};
+        entries.push_back({watch.fd, static_cast<short>(watch.event.events & kKnown), 0, watch.seen});
     }
     static_cast<void>(mask);  // as ppoll() has it here, and its nanoseconds
     if (deadline != kNever)
         deadline = time_after(from_timespec(to_timespec(board_time(std::max<Time>(deadline - now(), 0)))));
-    const int ready = poll_items(entries, count, deadline);
+    const int ready = poll_items(entries.data(), entries.size(), deadline);
     if (ready <= 0) return ready;
-    epoll_event ready_devices[kMostWatches];
-    const int devices = gather(epoll_fd, entries, count, ready_devices, std::min(most, kMostWatches));
-    if (!copy_to_program(events, ready_devices, static_cast<std::size_t>(devices) * sizeof(epoll_event)))
+    std::vector<epoll_event> ready_devices(std::min<std::size_t>(entries.size(), most));
+    const int devices = gather(epoll_fd, entries.data(), entries.size(), ready_devices.data(),
+                               static_cast<int>(ready_devices.size()));
+    if (!copy_to_program(events, ready_devices.data(),
+                         static_cast<std::size_t>(devices) * sizeof(epoll_event)))
         return -1;
     if (entries[0].revents == 0 || devices == most) return devices;
     const int others = REAL(epoll_wait)(epoll_fd, events + devices, most - devices, 0);

@@ -61,7 +61,7 @@ void ask_node() {
 void put_request(const wire::Request& request, const void* data, std::size_t size) {
     wire::Channel& link = channel();
     link.request = request;
-    link.request_size = static_cast<std::uint32_t>(std::min<std::size_t>(size, wire::kMaximumSocketData));
+    link.request_size = static_cast<std::uint32_t>(std::min<std::size_t>(size, wire::kMaximumData));
     if (size > 0) std::memcpy(link.request_data, data, link.request_size);
 }
 

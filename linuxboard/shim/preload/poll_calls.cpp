@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 using namespace puckloop::shim;
 
@@ -26,10 +27,30 @@ namespace puckloop::shim {
 namespace {
 constexpr nfds_t kMostEntries = FD_SETSIZE;
 
+/// Room for so many, which are few nearly always.
+template <typename T>
+class Room {
+  public:
+    explicit Room(std::size_t count) {
+        if (count > kFew) many_.resize(count);
+        items_ = count > kFew ? many_.data() : few_;
+    }
+    Room(const Room&) = delete;
+    Room& operator=(const Room&) = delete;
+    T& operator[](std::size_t i) { return items_[i]; }
+    T* data() { return items_; }
+
+  private:
+    static constexpr std::size_t kFew = 32;
+    T few_[kFew];
+    std::vector<T> many_;
+    T* items_;
+};
+
 /// The device entries through the node until `deadline`; number ready, or -1 and EINTR.
 int poll_devices(PollItem* entries, nfds_t count, Time deadline) {
-    wire::PollEntry list[kMostEntries];
-    nfds_t indices[kMostEntries];
+    Room<wire::PollEntry> list(count);
+    Room<nfds_t> indices(count);
     std::size_t total = 0;
     bool only_ttys = true;
     for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
@@ -48,7 +69,7 @@ int poll_devices(PollItem* entries, nfds_t count, Time deadline) {
     request.deadline = deadline;
     request.a = only_ttys ? 1 : 0;
     const std::size_t size = total * sizeof list[0];
-    const auto ready = device_call(request, list, size, list, size, true);
+    const auto ready = device_call(request, list.data(), size, list.data(), size, true);
     if (ready < 0) return -1;
     for (std::size_t i = 0; i < total; ++i) {
         entries[indices[i]].revents = list[i].returned;
@@ -59,8 +80,8 @@ int poll_devices(PollItem* entries, nfds_t count, Time deadline) {
 
 /// What the host reports of the entries that are no devices, right now.
 int poll_outside(PollItem* entries, nfds_t count) {
-    pollfd list[kMostEntries];
-    nfds_t indices[kMostEntries];
+    Room<pollfd> list(count);
+    Room<nfds_t> indices(count);
     nfds_t total = 0;
     for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
         if (entries[i].fd < 0 || open_file(entries[i].fd) != nullptr) continue;
@@ -68,7 +89,7 @@ int poll_outside(PollItem* entries, nfds_t count) {
         indices[total++] = i;
     }
     if (total == 0) return 0;
-    const int ready = REAL(poll)(list, total, 0);
+    const int ready = REAL(poll)(list.data(), total, 0);
     for (nfds_t i = 0; i < total; ++i)
         entries[indices[i]].revents = list[i].revents;
     return ready;
@@ -151,7 +172,7 @@ Time deadline_of(const timespec* timeout) {
 }
 
 int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time deadline) {
-    PollItem entries[kMostEntries];
+    Room<PollItem> entries(static_cast<std::size_t>(std::max(count, 0)));
     nfds_t total = 0;
     for (int fd = 0; fd < count && total < kMostEntries; ++fd) {
         int events = 0;
@@ -160,7 +181,7 @@ int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time 
         if (errors != nullptr && FD_ISSET(fd, errors)) events |= POLLPRI;
         if (events != 0) entries[total++] = {fd, static_cast<short>(events), 0, 0};
     }
-    const int result = poll_until(entries, total, deadline);
+    const int result = poll_until(entries.data(), total, deadline);
     if (result < 0) return result;
     int bits = 0;
     for (nfds_t i = 0; i < total; ++i) {
@@ -196,15 +217,15 @@ int poll_program(pollfd* theirs, nfds_t count, Time deadline) {
         errno = EINVAL;
         return -1;
     }
-    pollfd entries[FD_SETSIZE];
-    PollItem items[FD_SETSIZE];
-    if (!copy_from_program(entries, theirs, count * sizeof(pollfd))) return -1;
+    Room<pollfd> entries(count);
+    Room<PollItem> items(count);
+    if (!copy_from_program(entries.data(), theirs, count * sizeof(pollfd))) return -1;
     for (nfds_t i = 0; i < count; ++i)
         items[i] = {entries[i].fd, entries[i].events, 0, 0};
-    const int ready = poll_items(items, count, deadline);
+    const int ready = poll_items(items.data(), count, deadline);
     for (nfds_t i = 0; i < count; ++i)
         entries[i].revents = items[i].revents;
-    return ready >= 0 && !copy_to_program(theirs, entries, count * sizeof(pollfd)) ? -1 : ready;
+    return ready >= 0 && !copy_to_program(theirs, entries.data(), count * sizeof(pollfd)) ? -1 : ready;
 }
 
 /// A timeout that is given; false and errno if it is none.

@@ -20,8 +20,6 @@ inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socke
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
 inline constexpr std::uint32_t kMaximumData = 16'384;
-/// The same for sockets: a datagram is not divided.
-inline constexpr std::uint32_t kMaximumSocketData = 66'560;
 
 enum class Op : std::uint32_t {
     Hello,        ///< a = kVersion, b = 1: forked, same image; data of the answer: what Exec or Fork kept
@@ -60,7 +58,8 @@ enum class Op : std::uint32_t {
     Connect,      ///< handle, data: address
     Listen,       ///< handle, a = backlog
     Accept,       ///< handle; result: handle; data: address
-    Send,         ///< handle, a = 1: `data` begins with the address to send to; result: bytes taken
+    Send,         ///< handle, a = 1: `data` begins with the address to send to; result: bytes taken;
+                  ///< b = 1: the beginning of a datagram, of which more follows
     Receive,      ///< handle, a = most bytes, b = of kReceive...; data: SocketReceived, bytes
     Shutdown,     ///< handle, a = as in shutdown(2)
     SetOption,    ///< handle, a = level, b = name, data: value
@@ -122,7 +121,8 @@ struct SocketAddress {
     std::uint16_t padding = 0;
 };
 
-inline constexpr std::uint32_t kReceivePeek = 1, kReceiveAll = 2;
+/// kReceiveRest: what a reply had no room for of the datagram before, whose size was its result.
+inline constexpr std::uint32_t kReceivePeek = 1, kReceiveAll = 2, kReceiveRest = 4;
 struct SocketReceived {
     SocketAddress from{};
     std::uint32_t size = 0;  ///< of the whole datagram
@@ -198,7 +198,7 @@ struct alignas(4096) Channel {
     static constexpr std::uint32_t kMostDone = 16;
     static constexpr std::uint32_t kMostWritten = 512;
     /// At least one completion with the most data.
-    static constexpr std::uint32_t kReplyRoom = 2 * kMaximumSocketData;
+    static constexpr std::uint32_t kReplyRoom = 2 * kMaximumData;
 
     Turn turn;
     std::uint32_t request_size = 0;  ///< bytes in `request_data`
@@ -210,7 +210,7 @@ struct alignas(4096) Channel {
     std::uint32_t written_size = 0;
     Done done[kMostDone];
     char written[kMostWritten];
-    char request_data[kMaximumSocketData];
+    char request_data[kMaximumData];
     char reply_data[kReplyRoom];
 };
 

@@ -86,6 +86,23 @@ print("half", client.recv(99), os.read(copy, 0))
 server.close()
 os.close(copy)
 
+# A large datagram, and much of a stream at once
+into = datagram()
+into.bind(("127.0.0.1", 7200))
+big = bytes(i * 7 & 255 for i in range(60000))
+out = datagram()
+print("large", out.sendto(big, ("127.0.0.1", 7200)), into.recv(65536) == big)
+out.sendto(big, ("127.0.0.1", 7200))
+print("cut", into.recv(40000) == big[:40000])
+attempt("too large", lambda: out.sendto(bytes(65508), ("127.0.0.1", 7200)))
+sender = stream()
+sender.connect(("127.0.0.1", 7100))
+receiver, _ = first.accept()
+feeder = threading.Thread(target=lambda: sender.sendall(big * 5))
+feeder.start()
+print("all", receiver.recv(300000, socket.MSG_WAITALL) == big * 5)
+feeder.join()
+
 # A child has its parent's sockets
 parent = stream()
 parent.connect(("127.0.0.1", 7100))

@@ -43,13 +43,20 @@ std::int64_t send_piece(OpenFile& file, const char* data, std::size_t size, int 
     request.op = wire::Op::Send;
     request.handle = file.handle;
     request.nonblocking = !waits(file, flags);
-    const std::size_t head = to != nullptr ? sizeof *to : 0;
-    if (head == 0) return device_call(request, data, size, nullptr, 0, true);
-    request.a = 1;
-    std::vector<char> all(head + size);
-    std::memcpy(all.data(), to, head);
-    if (size > 0) std::memcpy(all.data() + head, data, size);
-    return device_call(request, all.data(), all.size(), nullptr, 0, true);
+    std::vector<char> all(data, data + size);
+    if (to != nullptr) {
+        request.a = 1;
+        const char* head = reinterpret_cast<const char*>(to);
+        all.insert(all.begin(), head, head + sizeof *to);
+    }
+    std::size_t done = 0;
+    for (; all.size() - done > wire::kMaximumData; done += wire::kMaximumData) {
+        wire::Request begin = request;
+        begin.b = 1;
+        device_call(begin, all.data() + done, wire::kMaximumData);
+    }
+    const std::int64_t sent = device_call(request, all.data() + done, all.size() - done, nullptr, 0, true);
+    return to != nullptr ? named(sent, *to) : sent;
 }
 
 struct Arrived {
@@ -63,12 +70,13 @@ std::int64_t receive(OpenFile& file, std::size_t most, int flags, Arrived& arriv
     charge(page().charges.device);
     if ((flags & MSG_OOB) != 0) return fail(EINVAL);
     if ((flags & MSG_ERRQUEUE) != 0) return fail(EAGAIN);
-    constexpr std::size_t kMost = wire::kMaximumSocketData - sizeof(wire::SocketReceived);
+    constexpr std::size_t kMostOfStream = wire::kMaximumData - sizeof(wire::SocketReceived);
+    constexpr std::size_t kMostOfDatagram = 65'535;
     if (file.stream && most == 0) return 0;
     wire::Request request;
     request.op = wire::Op::Receive;
     request.handle = file.handle;
-    request.a = static_cast<std::uint32_t>(std::min(most, kMost));
+    request.a = static_cast<std::uint32_t>(std::min(most, file.stream ? kMostOfStream : kMostOfDatagram));
     request.b = ((flags & MSG_PEEK) != 0 ? wire::kReceivePeek : 0) |
                 ((flags & MSG_WAITALL) != 0 ? wire::kReceiveAll : 0);
     request.nonblocking = !waits(file, flags);
@@ -76,10 +84,25 @@ std::int64_t receive(OpenFile& file, std::size_t most, int flags, Arrived& arriv
     std::size_t size = 0;
     const std::int64_t result = device_call(request, nullptr, 0, answer.data(), answer.size(), true, &size);
     if (result < 0) return -1;
+    const std::size_t whole = sizeof arrived.head + static_cast<std::size_t>(result);
+    while (size < std::min(whole, answer.size())) {
+        request.b = wire::kReceiveRest;
+        std::size_t more = 0;
+        if (device_call(request, nullptr, 0, answer.data() + size, answer.size() - size, false, &more) <= 0)
+            break;
+        size += more;
+    }
     std::memcpy(&arrived.head, answer.data(), std::min(size, sizeof arrived.head));
     arrived.data.assign(answer.begin() + sizeof arrived.head,
                         answer.begin() + static_cast<std::ptrdiff_t>(std::max(size, sizeof arrived.head)));
-    return result;
+    // A stream's next piece, where all of it is wanted.
+    const bool goes_on = file.stream && (flags & MSG_WAITALL) != 0 && (flags & MSG_PEEK) == 0 &&
+                         arrived.data.size() == kMostOfStream && most > kMostOfStream;
+    if (!goes_on) return result;
+    Arrived rest;
+    if (receive(file, most - kMostOfStream, flags, rest) < 0) return result;
+    arrived.data.insert(arrived.data.end(), rest.data.begin(), rest.data.end());
+    return static_cast<std::int64_t>(arrived.data.size());
 }
 
 bool put_sender(const wire::SocketReceived& head, sockaddr* theirs, socklen_t* length) {
@@ -164,7 +187,8 @@ std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int 
     if ((flags & MSG_OOB) != 0) return fail(EOPNOTSUPP);
     std::int64_t sent = 0;
     if (!file.stream) {
-        if (size > wire::kMaximumSocketData - sizeof *to) return fail(EMSGSIZE);
+        constexpr std::size_t kMostOfDatagram = 65'507;
+        if (size > kMostOfDatagram) return fail(EMSGSIZE);
         sent = send_piece(file, data, size, flags, to);
     }
     while (file.stream) {

@@ -29,6 +29,22 @@ OpenFile* socket_file(int fd) {
     return file != nullptr && file->kind == OpenFile::Kind::Socket ? file : nullptr;
 }
 
+std::int64_t named(std::int64_t result, const wire::SocketAddress& address) {
+    if (result >= 0) return result;
+    const int error = errno;
+    const std::uint32_t a = address.address;
+    if (error == ENETUNREACH)
+        note("the address %u.%u.%u.%u is outside of the network", a >> 24, a >> 16 & 0xff, a >> 8 & 0xff,
+             a & 0xff);
+    if (error == EHOSTUNREACH)
+        note("nobody has the address %u.%u.%u.%u", a >> 24, a >> 16 & 0xff, a >> 8 & 0xff, a & 0xff);
+    if (error == EADDRINUSE) note("the port %u is in use on this board", address.port);
+    if (error == EADDRNOTAVAIL)
+        note("the address %u.%u.%u.%u is not this board's", a >> 24, a >> 16 & 0xff, a >> 8 & 0xff, a & 0xff);
+    errno = error;
+    return result;
+}
+
 }  // namespace puckloop::shim
 
 namespace {
@@ -135,7 +151,7 @@ SHIM_EXPORT int bind(int fd, const sockaddr* address, socklen_t length) noexcept
     charge(page().charges.device);
     wire::SocketAddress to;
     if (!get_address(to, address, length)) return -1;
-    return static_cast<int>(device_call(request_of(*file, wire::Op::Bind), &to, sizeof to));
+    return static_cast<int>(named(device_call(request_of(*file, wire::Op::Bind), &to, sizeof to), to));
 }
 
 SHIM_EXPORT int listen(int fd, int backlog) noexcept {
@@ -163,7 +179,7 @@ SHIM_EXPORT int connect(int fd, const sockaddr* address, socklen_t length) {
     } else if (!get_address(to, address, length)) {
         return -1;
     }
-    return static_cast<int>(device_call(request, &to, sizeof to, nullptr, 0, true));
+    return static_cast<int>(named(device_call(request, &to, sizeof to, nullptr, 0, true), to));
 }
 
 SHIM_EXPORT int accept4(int fd, sockaddr* from, socklen_t* length, int flags) {

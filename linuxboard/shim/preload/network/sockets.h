@@ -18,6 +18,9 @@ bool networked();
 /// The socket behind a descriptor, or nullptr.
 OpenFile* socket_file(int fd);
 
+/// Names once what the network has refused, by errno; `result` and errno stay.
+std::int64_t named(std::int64_t result, const wire::SocketAddress& address);
+
 /// read(), write() and their kin on a socket, with the flags of recv() and send().
 std::int64_t read_socket(OpenFile& file, void* buffer, std::size_t size, int flags);
 std::int64_t write_socket(OpenFile& file, const void* data, std::size_t size, int flags);
