@@ -52,6 +52,11 @@ class Prefix(unittest.TestCase):
             self.assertTrue(any(some in row["name"] for row in rows), kind)
             self.assertTrue(all(row["file"].startswith(str(self.prefix)) for row in rows), kind)
 
+    def test_every_scenario_has_what_it_names(self):
+        for row in json.loads(self.run_("list", "scenarios", "--json").stdout)["scenarios"]:
+            if "firmware" in pathlib.Path(row["file"]).read_text():  # else an arena alone, which others use
+                self.run_("check", row["name"])  # images and programs too
+
     def test_data_elsewhere(self):
         folder = self.elsewhere / "data" / "scenarios"
         folder.mkdir(parents=True)
