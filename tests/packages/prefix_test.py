@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -54,7 +55,8 @@ class Prefix(unittest.TestCase):
 
     def test_every_scenario_has_what_it_names(self):
         for row in json.loads(self.run_("list", "scenarios", "--json").stdout)["scenarios"]:
-            if "firmware" in pathlib.Path(row["file"]).read_text():  # else an arena alone, which others use
+            text = pathlib.Path(row["file"]).read_text()
+            if re.search(r"^\[\[(robot|group|tam)\]\]", text, re.MULTILINE):  # else an arena alone, which others use
                 self.run_("check", row["name"])  # images and programs too
 
     def test_data_elsewhere(self):
