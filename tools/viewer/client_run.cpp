@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int kShellSignal = 128;
 
-/// What tells one control.json from another.
+/// By what one control.json differs from another.
 std::optional<std::pair<ino_t, timespec>> version_of(const fs::path& file) {
     struct stat info {};
     if (::stat(file.c_str(), &info) != 0) return std::nullopt;
