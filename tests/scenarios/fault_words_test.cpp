@@ -88,7 +88,8 @@ TEST_CASE("what a fault cannot be is refused by name") {
     };
     said("drop", "'link' is missing");
     said("drop link=robot1.uart", "there is no link 'robot1.uart' that can have a fault (expected "
-                                  "robot0.uart, robot0.i2c, robot0.ir, tam0.xbee, tam0.radio)");
+                                  "robot0.uart, robot0.i2c, robot0.ir, tam0.xbee, tam0.radio; did you mean "
+                                  "\"robot0.uart\"?)");
     said("drop node=robot0.pic2", "there is no node");
     said("drop link=robot0.uart node=x", "both a link and a node");
     said("dorp link=robot0.uart", "unknown fault kind 'dorp' for robot0.uart (expected one of drop");

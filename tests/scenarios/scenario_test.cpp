@@ -179,7 +179,7 @@ TEST_CASE("what cannot be run is refused with its line") {
               .find("window is empty") != std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot1.uart\"\n")
               .ends_with("fault 1: there is no link 'robot1.uart' that can have a fault (expected "
-                         "robot0.uart, robot0.i2c)"));
+                         "robot0.uart, robot0.i2c; did you mean \"robot0.uart\"?)"));
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = [\"0x00\", \"300\"]\n")
               .find("'300' is not a byte") != std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = []\n").find("bytes is empty") !=
