@@ -85,8 +85,7 @@ void Conductor::State::run_and_save() {
         release_trace(at);
         for (TraceSink* sink : sinks)
             sink->flush();
-        const bool saves = at == next_save(before);
-        if (saves) {
+        if (at == next_save(before)) {
             RunSnapshot taken = snapshot(at);
             options_.save(taken);
         }

@@ -214,7 +214,7 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
     cosim::NodeFactory factory = make_described;
     if (!request.gdb.empty()) {
         debuggers.emplace(planned, request, options.abort_requested);
-        debuggers->keep_past(options, trace, record, lines);
+        debuggers->keep_past(options, {trace, record, lines});
         factory = [&](const std::string& node) { return debuggers->make_node(node); };
     }
     std::optional<DrivenRun> driven;

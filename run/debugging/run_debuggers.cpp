@@ -31,30 +31,25 @@ std::unique_ptr<cosim::Node> RunDebuggers::make_node(const std::string& text) {
     return make_debugged(make_board(node), **debugger);
 }
 
-void RunDebuggers::keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,
-                             std::optional<cosim::TraceCsvSink>& record, const LineWatch& lines) {
+void RunDebuggers::keep_past(cosim::RunOptions& options, RunWritten written) {
     if (!no_way_back_.empty()) return;
     options.save_next = [this](cosim::Time after) { return history_.next(after); };
-    options.save = [this, &trace, &record, &lines, to_file = options.save,
+    options.save = [this, written, to_file = options.save,
                     at = options.save_at](cosim::RunSnapshot& snapshot) {
         if (std::find(at.begin(), at.end(), snapshot.time) != at.end()) to_file(snapshot);
-        RunHistory::Place here = place();
-        here.trace = trace->size();
-        if (record) here.record = record->size();
-        here.lines = lines.seen();
-        history_.take(snapshot, std::move(here));
+        history_.take(snapshot, written.place(places()));
     };
 }
 
-RunHistory::Place RunDebuggers::place() const {
-    RunHistory::Place here;
+std::vector<RunHistory::Board> RunDebuggers::places() const {
+    std::vector<RunHistory::Board> places;
     for (const auto& board : boards_)
-        here.boards.push_back({board->cycle(), board->changes_made()});
-    return here;
+        places.push_back({board->cycle(), board->changes_made()});
+    return places;
 }
 
 void RunDebuggers::begin_history() {
-    if (!history_.begun()) history_.begin(origin_, place());
+    if (!history_.begun()) history_.begin(origin_, {.boards = places()});
 }
 
 const cosim::RunSnapshot* RunDebuggers::begin_again() {

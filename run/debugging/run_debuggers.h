@@ -30,10 +30,8 @@ class RunDebuggers {
 
     /// As run/factory/node_factory.h, with debuggers at their boards.
     std::unique_ptr<cosim::Node> make_node(const std::string& json);
-    /// Has the conductor keep the run's past, if it can go back at all. `trace` and `record` are what it
-    /// writes, `lines` what it looks for; all must stay.
-    void keep_past(cosim::RunOptions& options, std::optional<cosim::TraceCsvSink>& trace,
-                   std::optional<cosim::TraceCsvSink>& record, const LineWatch& lines);
+    /// Has the conductor keep the run's past, if it can go back at all.
+    void keep_past(cosim::RunOptions& options, RunWritten written);
     /// After EndReason::Reverted: from where the run is to begin again; null: from power-up.
     const cosim::RunSnapshot* begin_again();
     /// How much of what was written stays; nothing: the run begins where it began first.
@@ -65,7 +63,7 @@ class RunDebuggers {
         debug::Stop stop{};
     };
     [[noreturn]] void search_over(BoardDebugger& who);
-    RunHistory::Place place() const;
+    std::vector<RunHistory::Board> places() const;
     void wait() const;
 
     std::vector<std::unique_ptr<BoardDebugger>> boards_;

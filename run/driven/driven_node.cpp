@@ -8,13 +8,6 @@ namespace puckloop::tools {
 DrivenNode::DrivenNode(std::unique_ptr<cosim::StatefulNode> board)
     : board_(std::move(board)), chip_(chip_of(*board_)) {}
 
-std::vector<std::uint8_t> DrivenNode::saved() const {
-    std::vector<std::uint8_t> bytes;
-    StateWriter archive(bytes);
-    state(archive);
-    return bytes;
-}
-
 cosim::Time DrivenNode::earliest_output(cosim::PortIndex port) const {
     const cosim::Time earliest = board_->earliest_output(port);
     const bool bus = board_->ports()[port].kind == cosim::PortKind::I2c;

@@ -26,8 +26,6 @@ class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
     bool changes_wait() const { return !changes_.empty(); }
     /// The run ends with this at the node's next advance.
     void ask_to_stop(cosim::Stop stop) { stop_wanted_ = std::move(stop); }
-    /// What a snapshot holds of it.
-    std::vector<std::uint8_t> saved() const;
 
     std::string_view name() const override { return board_->name(); }
     std::span<const cosim::Port> ports() const override { return board_->ports(); }

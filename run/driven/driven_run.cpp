@@ -113,7 +113,7 @@ std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
     return node;
 }
 
-void DrivenRun::drive(cosim::RunOptions& options, Written written) {
+void DrivenRun::drive(cosim::RunOptions& options, RunWritten written) {
     written_.emplace(written);
     history_.begin(request_.snapshot, {});
     if (no_way_back_.empty()) remember_at_ = history_.next(setup_.from_time);
@@ -123,25 +123,19 @@ void DrivenRun::drive(cosim::RunOptions& options, Written written) {
     };
     options.stand = [this](Time time, const TakeSnapshot& take) {
         now_ = time;
-        remember(take, time >= remember_at_);
+        if (time >= remember_at_) remember(take);
         if (!next_ || time < *next_) return;
         begun_ = true;
         stand(take);
     };
 }
 
-void DrivenRun::remember(const TakeSnapshot& take, bool due) {
-    if (!due) return;
+void DrivenRun::remember(const TakeSnapshot& take) {
     remember_at_ = history_.next(now_);
     // A change that waits for its board's next instruction is in no snapshot: later, then.
-    for (const auto& [name, access] : boards_)
-        if (access->node().changes_wait()) return;
-    RunHistory::Place place;
-    place.trace = written_->trace->size();
-    if (written_->record) place.record = written_->record->size();
-    place.lines = written_->lines.seen();
+    if (waiting_change() != nullptr) return;
     cosim::RunSnapshot snapshot = take();
-    history_.take(snapshot, std::move(place));
+    history_.take(snapshot, written_->place());
     remember_at_ = history_.next(now_);
 }
 
@@ -277,8 +271,9 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
     } else if (op == "fault") {
         add_fault(request, take);
     } else if (op != "info") {
-        constexpr std::array<std::string_view, 11> kOps{"info", "step", "read", "write", "capture", "frames",
-                                                        "act",  "save", "back", "fault", "end"};
+        constexpr std::array<std::string_view, 13> kOps{"info",    "step",   "read", "where", "write",
+                                                        "capture", "frames", "act",  "save",  "faults",
+                                                        "back",    "fault",  "end"};
         throw InputError(
             "", "op", fmt::format("there is no '{}'", op),
             fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
@@ -312,12 +307,21 @@ void DrivenRun::begin_step(const json& request) {
     step_ = std::move(step);
 }
 
-void DrivenRun::save(const json& request, const TakeSnapshot& take) {
+const std::string* DrivenRun::waiting_change() const {
     for (const auto& [name, access] : boards_)
-        if (access->node().changes_wait())
-            throw InputError("", "save",
-                             fmt::format("a register of {} is written before its next instruction", name),
-                             "a step before it");
+        if (access->node().changes_wait()) return &name;
+    return nullptr;
+}
+
+void DrivenRun::refuse_waiting_change(const char* op) const {
+    if (const std::string* board = waiting_change())
+        throw InputError("", op,
+                         fmt::format("a register of {} is written before its next instruction", *board),
+                         "a step before it");
+}
+
+void DrivenRun::save(const json& request, const TakeSnapshot& take) {
+    refuse_waiting_change("save");
     cosim::RunSnapshot snapshot = take();
     snapshot.build = cosim::build_id();
     snapshot.origin = origin_;
@@ -346,19 +350,17 @@ void DrivenRun::go_back(const json& request) {
 
 void DrivenRun::add_fault(const json& request, const TakeSnapshot& take) {
     if (!no_way_back_.empty()) throw InputError("", "fault", no_way_back_, "--fault when the run is started");
-    for (const auto& [name, access] : boards_)
-        if (access->node().changes_wait())
-            throw InputError("", "fault",
-                             fmt::format("a register of {} is written before its next instruction", name),
-                             "a step before it");
+    refuse_waiting_change("fault");
     RunRequest with = request_;
     const json& faults = request.at("fault");
     for (const json& fault : faults.is_array() ? faults : json::array({faults}))
         with.faults.push_back(fault.get<std::string>());
     RunSetup next = planned(with);
     check_origin(origin_, next, now_, "");
-    cosim::check_link_faults(take(), next.links, next.scenario.faults, next.scenario.seed);
-    remember(take, true);
+    // Of one snapshot both: it is checked first, and kept then.
+    cosim::RunSnapshot here = take();
+    cosim::check_link_faults(here, next.links, next.scenario.faults, next.scenario.seed);
+    remember([&] { return std::move(here); });
     add_events(next, now_);
     setup_ = std::move(next);
     request_ = std::move(with);

@@ -43,12 +43,6 @@ class DrivenRun {
   public:
     static constexpr int kProtocol = 1;
 
-    /// What the run writes and looks for; must stay.
-    struct Written {
-        std::optional<cosim::TraceCsvSink>& trace;
-        std::optional<cosim::TraceCsvSink>& record;
-        const LineWatch& lines;
-    };
     /// Plans the run of a request (run/setup.h).
     using Planner = std::function<RunSetup(const RunRequest&)>;
 
@@ -59,7 +53,7 @@ class DrivenRun {
     /// As run/factory/node_factory.h, with boards that the client reaches.
     std::unique_ptr<cosim::Node> make_node(const std::string& json);
     /// The conductor stands still at the beginning, and then where the client wants.
-    void drive(cosim::RunOptions& options, Written written);
+    void drive(cosim::RunOptions& options, RunWritten written);
     /// After EndReason::Reverted: from where the run is to begin again; null: from power-up.
     const cosim::RunSnapshot* begin_again();
     /// How much of what was written stays; null: the run begins where it began first.
@@ -95,8 +89,12 @@ class DrivenRun {
     using TakeSnapshot = std::function<cosim::RunSnapshot()>;
 
     void stand(const TakeSnapshot& take);
-    /// Into history_, if that is due.
-    void remember(const TakeSnapshot& take, bool due);
+    /// Into history_.
+    void remember(const TakeSnapshot& take);
+    /// The board of which a register is still to be written, null: none.
+    const std::string* waiting_change() const;
+    /// Throws InputError for it, naming `op`.
+    void refuse_waiting_change(const char* op) const;
     /// False: not yet where a run that was begun again is to stand.
     bool returned();
     /// The step's condition holds now.
@@ -128,7 +126,7 @@ class DrivenRun {
     std::map<std::string, std::unique_ptr<BoardAccess>> boards_;
     std::string origin_;
     std::string no_way_back_;  ///< why; empty: there is one
-    std::optional<Written> written_;
+    std::optional<RunWritten> written_;
     cosim::Time now_ = 0;
     std::optional<cosim::Time> next_;  ///< where the run stands still next; nothing: nowhere
     bool begun_ = false, ended_ = false;

@@ -84,4 +84,8 @@ std::shared_ptr<const RunSnapshot> RunHistory::snapshot(std::size_t instant) con
     return whole;
 }
 
+RunHistory::Place RunWritten::place(std::vector<RunHistory::Board> boards) const {
+    return {std::move(boards), trace->size(), record ? record->size() : 0, lines.seen()};
+}
+
 }  // namespace puckloop::tools

@@ -6,6 +6,7 @@
 // record at any later one.
 
 #include "cosim/resume/run_snapshot.h"
+#include "cosim/trace/trace_csv.h"
 #include "run/description/run_request.h"
 #include "run/description/run_setup.h"
 #include "run/expectations/line_watch.h"
@@ -78,6 +79,16 @@ class RunHistory {
     std::vector<cosim::WireState> carried_;  ///< by the wires up to the last snapshot
     cosim::Time last_ = 0;                   ///< of all snapshots ever taken
     cosim::Time interval_ = kFirstInterval;
+};
+
+/// What a run writes and looks for while it goes; must stay.
+struct RunWritten {
+    std::optional<cosim::TraceCsvSink>& trace;
+    std::optional<cosim::TraceCsvSink>& record;
+    const LineWatch& lines;
+
+    /// How far all of it is now.
+    RunHistory::Place place(std::vector<RunHistory::Board> boards = {}) const;
 };
 
 }  // namespace puckloop::tools

@@ -62,7 +62,7 @@ class Outside {
     }
 
     /// From `now` on others act: what is still to come comes earlier or later, and what follows is drawn
-    /// anew.
+    /// again.
     void diverge(std::uint64_t seed, Time now) {
         random_ = RandomStream(seed, "others");
         std::map<PortIndex, Time> shifts;

@@ -8,7 +8,7 @@
 #include "traces/recorded_trace.h"
 #include "view/answers.h"
 #include "view/export_page.h"
-#include "view/live/driver.h"
+#include "view/live/control_client.h"
 #include "view/server/http_server.h"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ void declare_view(Command& app, int&) {
                     "  puckloop view out/hello                     # prints the address to open\n"
                     "  puckloop view out/hello --export hello.html # one file to keep or to mail\n");
     command->callback([options] {
-        if (view::Driver::is_there(options->folder)) {
+        if (view::ControlClient::is_there(options->folder)) {
             if (!options->file.empty())
                 throw InputError(options->folder, "--export", "its run goes on", "the end of the run");
             return serve_live(options->folder, options->port);

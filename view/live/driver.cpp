@@ -24,10 +24,6 @@ constexpr std::size_t kLongestCommand = 1000, kLongestName = 64;
 
 }  // namespace
 
-bool Driver::is_there(const fs::path& folder) {
-    return ControlClient::is_there(folder);
-}
-
 Driver::Driver(const fs::path& folder) : run_(folder) {
     const auto first = json::parse(run_.greeting());
     time_s_ = first.value("time_s", 0.0);

@@ -26,9 +26,6 @@ class Driver {
     Driver(const Driver&) = delete;
     Driver& operator=(const Driver&) = delete;
 
-    /// control.json there names a run that goes on and takes a client.
-    static bool is_there(const std::filesystem::path& folder);
-
     /// A request of a page, JSON: "page" (its name), "do": "play" with "speed" (times real time; 0: as fast
     /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "until" with "condition" (of
     /// the protocol's step) and "ms" (at most so long), "back" with "to_s", "fault" with "fault" (as

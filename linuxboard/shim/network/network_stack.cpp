@@ -209,16 +209,7 @@ void NetworkStack::forget_closed() {
             ++it;
             continue;
         }
-        if (socket.tcp) {
-            const TcpCounts& counts = socket.tcp->counts();
-            ended_.sent += counts.sent;
-            ended_.received += counts.received;
-            ended_.retransmitted += counts.retransmitted;
-            ended_.timeouts += counts.timeouts;
-            ended_.fast_retransmits += counts.fast_retransmits;
-            ended_.octets_sent += counts.octets_sent;
-            ended_.octets_received += counts.octets_received;
-        }
+        if (socket.tcp) ended_ += socket.tcp->counts();
         it = sockets_.erase(it);
     }
 }
@@ -341,17 +332,8 @@ std::size_t NetworkStack::unsent(int id) const {
 
 std::string NetworkStack::report() const {
     TcpCounts tcp = ended_;
-    for (const auto& [id, socket] : sockets_) {
-        if (!socket->tcp) continue;
-        const TcpCounts& counts = socket->tcp->counts();
-        tcp.sent += counts.sent;
-        tcp.received += counts.received;
-        tcp.retransmitted += counts.retransmitted;
-        tcp.timeouts += counts.timeouts;
-        tcp.fast_retransmits += counts.fast_retransmits;
-        tcp.octets_sent += counts.octets_sent;
-        tcp.octets_received += counts.octets_received;
-    }
+    for (const auto& [id, socket] : sockets_)
+        if (socket->tcp) tcp += socket->tcp->counts();
     const nlohmann::ordered_json report = {{"address", protocols::to_text(place_.address)},
                                            {"packets_sent", counts_.packets_sent},
                                            {"packets_received", counts_.packets_received},

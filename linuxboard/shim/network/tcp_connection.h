@@ -33,6 +33,17 @@ struct TcpCounts {
     std::uint64_t timeouts = 0;                          ///< of the retransmission timer
     std::uint64_t fast_retransmits = 0;                  ///< begun by three duplicate acknowledgements
     std::uint64_t octets_sent = 0, octets_received = 0;  ///< of data, each once
+
+    TcpCounts& operator+=(const TcpCounts& other) {
+        sent += other.sent;
+        received += other.received;
+        retransmitted += other.retransmitted;
+        timeouts += other.timeouts;
+        fast_retransmits += other.fast_retransmits;
+        octets_sent += other.octets_sent;
+        octets_received += other.octets_received;
+        return *this;
+    }
 };
 
 class TcpConnection {

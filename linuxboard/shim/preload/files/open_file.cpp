@@ -167,6 +167,14 @@ bool release_file(int fd) {
     return true;
 }
 
+wire::Request device_request(const OpenFile& file, wire::Op op) {
+    wire::Request request;
+    request.op = op;
+    request.handle = file.handle;
+    request.nonblocking = (file.flags & O_NONBLOCK) != 0;
+    return request;
+}
+
 std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
     mark_call("read");
     pthread_testcancel();
@@ -180,11 +188,8 @@ std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
     if (!is_user_range(buffer, size)) return -1;
     if (file.kind == OpenFile::Kind::I2c) return read_i2c(file, buffer, size);
     if (file.kind == OpenFile::Kind::Video) return read_video(file, buffer, size);
-    wire::Request request;
-    request.op = wire::Op::Read;
-    request.handle = file.handle;
+    wire::Request request = device_request(file, wire::Op::Read);
     request.a = static_cast<std::uint32_t>(std::min<std::size_t>(size, wire::kMaximumData));
-    request.nonblocking = (file.flags & O_NONBLOCK) != 0;
     return device_call(request, nullptr, 0, buffer, size, true);
 }
 
@@ -215,10 +220,7 @@ std::int64_t write_device(OpenFile& file, const void* data, std::size_t size) {
             errno = EFAULT;
             return written > 0 ? written : -1;
         }
-        wire::Request request;
-        request.op = wire::Op::Write;
-        request.handle = file.handle;
-        request.nonblocking = (file.flags & O_NONBLOCK) != 0;
+        const wire::Request request = device_request(file, wire::Op::Write);
         const std::int64_t result = device_call(request, bytes, part, nullptr, 0, true);
         if (result < 0) return written > 0 ? written : result;
         written += result;

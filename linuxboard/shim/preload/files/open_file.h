@@ -59,6 +59,8 @@ void share_file(int from, int to);
 /// Forgets the descriptor; the last one closes the device. False if it is none of ours.
 bool release_file(int fd);
 
+/// A request about the file, which waits where its descriptor's flags do not forbid that.
+wire::Request device_request(const OpenFile& file, wire::Op op);
 std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size);
 std::int64_t write_device(OpenFile& file, const void* data, std::size_t size);
 /// i2c_calls.cpp: one message each.

@@ -28,14 +28,6 @@ bool has_list(std::uint32_t request) {
     return request == VIDIOC_G_EXT_CTRLS || request == VIDIOC_S_EXT_CTRLS || request == VIDIOC_TRY_EXT_CTRLS;
 }
 
-wire::Request request_for(const OpenFile& file, wire::Op op) {
-    wire::Request request;
-    request.op = op;
-    request.handle = file.handle;
-    request.nonblocking = (file.flags & O_NONBLOCK) != 0;
-    return request;
-}
-
 }  // namespace
 
 int video_ioctl(OpenFile& file, unsigned long number, void* argument) {
@@ -52,7 +44,7 @@ int video_ioctl(OpenFile& file, unsigned long number, void* argument) {
         listed = std::min(listed, sizeof data - size);
         if (!copy_from_program(data + size, controls.controls, listed)) return -1;
     }
-    wire::Request request = request_for(file, wire::Op::Ioctl);
+    wire::Request request = device_request(file, wire::Op::Ioctl);
     request.a = code;
     const bool waits = code == VIDIOC_DQBUF && request.nonblocking == 0;
     std::size_t received = 0;
@@ -72,7 +64,7 @@ int video_ioctl(OpenFile& file, unsigned long number, void* argument) {
 }
 
 std::int64_t read_video(OpenFile& file, void* buffer, std::size_t size) {
-    wire::Request request = request_for(file, wire::Op::VideoRead);
+    wire::Request request = device_request(file, wire::Op::VideoRead);
     request.a = static_cast<std::uint32_t>(std::min<std::size_t>(size, wire::kVideoBufferSize));
     std::uint64_t place = 0;
     const std::int64_t count = device_call(request, nullptr, 0, &place, sizeof place, true);

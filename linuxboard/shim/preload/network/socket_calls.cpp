@@ -54,14 +54,6 @@ int fail(int error) {
     return -1;
 }
 
-wire::Request request_of(const OpenFile& file, wire::Op op) {
-    wire::Request request;
-    request.op = op;
-    request.handle = file.handle;
-    request.nonblocking = (file.flags & O_NONBLOCK) != 0;
-    return request;
-}
-
 /// The program's address, as IPv4; false and errno for what is none.
 bool get_address(wire::SocketAddress& address, const sockaddr* theirs, socklen_t length) {
     sockaddr_in given{};
@@ -151,7 +143,7 @@ SHIM_EXPORT int bind(int fd, const sockaddr* address, socklen_t length) noexcept
     charge(page().charges.device);
     wire::SocketAddress to;
     if (!get_address(to, address, length)) return -1;
-    return static_cast<int>(named(device_call(request_of(*file, wire::Op::Bind), &to, sizeof to), to));
+    return static_cast<int>(named(device_call(device_request(*file, wire::Op::Bind), &to, sizeof to), to));
 }
 
 SHIM_EXPORT int listen(int fd, int backlog) noexcept {
@@ -159,7 +151,7 @@ SHIM_EXPORT int listen(int fd, int backlog) noexcept {
     if (file == nullptr) return REAL(listen)(fd, backlog);
     mark_call("listen");
     charge(page().charges.device);
-    wire::Request request = request_of(*file, wire::Op::Listen);
+    wire::Request request = device_request(*file, wire::Op::Listen);
     request.a = static_cast<std::uint32_t>(std::max(backlog, 0));
     return static_cast<int>(device_call(request));
 }
@@ -172,7 +164,7 @@ SHIM_EXPORT int connect(int fd, const sockaddr* address, socklen_t length) {
     charge(page().charges.device);
     sa_family_t family = AF_INET;
     if (length >= sizeof family && !copy_from_program(&family, address, sizeof family)) return -1;
-    wire::Request request = request_of(*file, wire::Op::Connect);
+    wire::Request request = device_request(*file, wire::Op::Connect);
     wire::SocketAddress to;
     if (family == AF_UNSPEC && !file->stream) {
         request.a = 1;
@@ -193,7 +185,7 @@ SHIM_EXPORT int accept4(int fd, sockaddr* from, socklen_t* length, int flags) {
     if (!file->stream) return fail(EOPNOTSUPP);
     wire::SocketAddress peer;
     const auto handle = static_cast<int>(
-        device_call(request_of(*file, wire::Op::Accept), nullptr, 0, &peer, sizeof peer, true));
+        device_call(device_request(*file, wire::Op::Accept), nullptr, 0, &peer, sizeof peer, true));
     if (handle < 0) return -1;
     const int made = new_descriptor(handle, true, flags);
     if (made >= 0 && !put_address(peer, from, length)) {
@@ -213,7 +205,7 @@ SHIM_EXPORT int shutdown(int fd, int how) noexcept {
     if (file == nullptr) return REAL(shutdown)(fd, how);
     mark_call("shutdown");
     charge(page().charges.device);
-    wire::Request request = request_of(*file, wire::Op::Shutdown);
+    wire::Request request = device_request(*file, wire::Op::Shutdown);
     request.a = static_cast<std::uint32_t>(how);
     return static_cast<int>(device_call(request));
 }
@@ -221,7 +213,7 @@ SHIM_EXPORT int shutdown(int fd, int how) noexcept {
 namespace {
 int name_of_end(OpenFile& file, bool peer, sockaddr* name, socklen_t* length) {
     charge(page().charges.device);
-    wire::Request request = request_of(file, wire::Op::SocketName);
+    wire::Request request = device_request(file, wire::Op::SocketName);
     request.a = peer ? 1 : 0;
     wire::SocketAddress address;
     if (device_call(request, nullptr, 0, &address, sizeof address) < 0) return -1;
@@ -249,7 +241,7 @@ SHIM_EXPORT int setsockopt(int fd, int level, int name, const void* value, sockl
     const std::size_t size = std::min<std::size_t>(length, sizeof bytes);
     if (static_cast<int>(length) < 0) return fail(EINVAL);
     if (!copy_from_program(bytes, value, size)) return -1;
-    wire::Request request = request_of(*file, wire::Op::SetOption);
+    wire::Request request = device_request(*file, wire::Op::SetOption);
     request.a = static_cast<std::uint32_t>(level);
     request.b = static_cast<std::uint32_t>(name);
     const auto result = static_cast<int>(device_call(request, bytes, size));
@@ -266,7 +258,7 @@ SHIM_EXPORT int getsockopt(int fd, int level, int name, void* value, socklen_t* 
     socklen_t room = 0;
     if (!get_from_program(room, length)) return -1;
     if (static_cast<int>(room) < 0) return fail(EINVAL);
-    wire::Request request = request_of(*file, wire::Op::GetOption);
+    wire::Request request = device_request(*file, wire::Op::GetOption);
     request.a = static_cast<std::uint32_t>(level);
     request.b = static_cast<std::uint32_t>(name);
     char bytes[256] = {};
