@@ -194,8 +194,10 @@ void IrcomNode::advance(Time until, std::span<const Message> inbox, std::vector<
     }
     ir.run_to(until - 1);
     ir.granted = until;
+    // What comes in from `until` on shows after a device's delay: all that is due before is settled.
     for (std::size_t d = 0; d < ir.outputs.size(); ++d)
-        for (auto& queue = ir.outputs[d]; !queue.empty() && queue.front().time < until; queue.pop_front())
+        for (auto& queue = ir.outputs[d]; !queue.empty() && queue.front().time < until + ir.delays[d];
+             queue.pop_front())
             outbox.push_back({queue.front().time, static_cast<PortIndex>(d),
                               cosim::Signal{queue.front().id, queue.front().value}});
 }
