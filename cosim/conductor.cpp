@@ -54,18 +54,20 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
     }
     for (const auto& handle : handles_)
         handle->await_ready();
+    in_windows_ = options_.windows && !processes_ && !options_.realtime;
     network_ = std::make_unique<Network>(handles_, links_, fault_specs_, options_.seed);
     end_ = options_.duration;
     times_.resize(handles_.size());
     slots_.resize(handles_.size());
     stats_.resize(2 * links_.size());
     failures_.resize(handles_.size());
-    workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0, handles_.size() + 1,
-                                         [this](std::size_t piece) {
-                                             if (piece == trace_piece()) return write_trace();
-                                             while (!work(piece, true)) {
-                                             }
-                                         });
+    const unsigned helpers = options_.threads > 1 ? options_.threads - 1 : 0;
+    workers_ = std::make_unique<Workers>(helpers, handles_.size() + 1 + helpers, [this](std::size_t piece) {
+        if (piece == trace_piece()) return write_trace();
+        if (piece >= share_piece()) return advance_shares();
+        while (!work(piece, true)) {
+        }
+    });
     if (options_.threads_if_faster && workers_->helpers() > 0) thread_trial_.emplace(kThreadRule);
     if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
 }
@@ -122,6 +124,7 @@ Outcome Conductor::State::run() {
 }
 
 void Conductor::State::loop() {
+    if (in_windows_) return loop_in_windows();
     while (true) {
         take_interrupt();
         surprised_.clear();
@@ -141,7 +144,7 @@ void Conductor::State::loop() {
         collect();
         for (int turns = 0; turns < kMostFollowing && follow_up(); ++turns)
             collect();
-        if (merger_.full()) release_trace_beside(std::min(schedule_.bounds().floor(), end_));
+        if (merger_.full()) release_trace_beside(std::min(floor(), end_));
         report_progress();
     }
 }
@@ -208,23 +211,27 @@ void Conductor::State::plan() {
         if (slot.stale && !times_[n].busy) find_unknown(n);
         pending_[n] = std::min(slot.unknown, slot.changed);
     }
+    schedule_.plan(network_->channels(), pending_, times_, limits());
+}
+
+ScheduleLimits Conductor::State::limits() {
     ScheduleLimits limits{pause_or_end(), kNever, options_.stop_latency};
     if (options_.realtime) {
-        if (!paced_since_ && schedule_.reached() >= options_.pace_from) paced_since_ = WallClock::now();
+        if (!paced_since_ && reached() >= options_.pace_from) paced_since_ = WallClock::now();
         // Before that the wall clock limits nobody: a node that has to wait for it would not go back.
         limits.pace =
             options_.pace_from + (paced_since_ ? from_seconds(seconds_since(*paced_since_)) + kPaceSlack
                                                : options_.stop_latency + 1);
     }
-    schedule_.plan(network_->channels(), pending_, times_, limits);
+    return limits;
 }
 
 void Conductor::State::report_progress() {
     const double wall = seconds_since(start_);
-    if (processes_) processes_->cores().step(wall, schedule_.reached(), grants_);
-    if (thread_trial_) workers_->set_resting(!thread_trial_->step(wall, schedule_.reached(), grants_));
+    if (processes_) processes_->cores().step(wall, reached(), grants_);
+    if (thread_trial_) workers_->set_resting(!thread_trial_->step(wall, reached(), grants_));
     if (wall - last_progress_wall_ >= kProgressSeconds) {
-        const Time time = schedule_.reached();
+        const Time time = reached();
         if (options_.progress)
             options_.progress(
                 {time, wall, to_seconds(time - last_progress_time_) / (wall - last_progress_wall_)});
@@ -232,7 +239,7 @@ void Conductor::State::report_progress() {
         last_progress_time_ = time;
     }
     if (wall - flushed_wall_ >= kFlushSeconds && !writing_) {
-        release_trace(std::min(schedule_.bounds().floor(), end_));
+        release_trace(std::min(floor(), end_));
         for (TraceSink* sink : sinks)
             sink->flush();
         flushed_wall_ = wall;

@@ -40,6 +40,9 @@ struct Progress {
 struct RunOptions {
     Time duration = kNever;
     bool in_process = false;
+    /// Where every node is in this process: they go side by side, a window at a time, and none runs ahead
+    /// (cosim/schedule/windows.h). The trace is the same. Not with `realtime`.
+    bool windows = false;
     bool realtime = false;           ///< simulated time never runs ahead of the wall clock
     Time pace_from = 0;              ///< with realtime: what lies before runs as fast as it can
     std::uint64_t seed = 1;          ///< for the faults' random streams

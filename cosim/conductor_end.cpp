@@ -63,7 +63,7 @@ void Conductor::State::take_wound_up(std::size_t n, Time before) {
 }
 
 bool Conductor::State::stuck() const {
-    const Time ceiling = std::min(pause_or_end(), later(schedule_.reached(), options_.stop_latency));
+    const Time ceiling = std::min(pause_or_end(), later(reached(), options_.stop_latency));
     for (std::size_t n = 0; n < times_.size(); ++n)
         if (std::min(schedule_.bounds().limit(n), ceiling) > times_[n].granted) return false;
     return true;
@@ -90,7 +90,7 @@ void Conductor::State::deadlock() const {
         "deadlock at simulated time {:.12f} s: each node waits for the next and none can rule out "
         "sending: {} (a cycle of links needs a positive sum of earliest output times, lookaheads and "
         "latencies)",
-        to_seconds(schedule_.reached()), names));
+        to_seconds(reached()), names));
 }
 
 void Conductor::State::fail(Outcome& outcome, const std::string& text) {
@@ -115,7 +115,7 @@ void Conductor::State::finish(Outcome& outcome) {
         }
     };
     guarded([&] { take_written(); });
-    guarded([&] { release_trace(failed ? kNever : std::min(schedule_.bounds().floor(), end_)); });
+    guarded([&] { release_trace(failed ? kNever : std::min(floor(), end_)); });
     for (TraceSink* sink : sinks)
         guarded([&] { sink->flush(); });
     for (std::size_t n = 0; n < handles_.size(); ++n) {

@@ -9,12 +9,6 @@
 
 namespace puckloop::cosim {
 
-namespace {
-bool after(const TraceRecord& a, const TraceRecord& b) {
-    return a.key() > b.key();
-}
-}  // namespace
-
 /// The first message that node `n` has neither handled nor foreseen as it is now.
 void Conductor::State::find_unknown(std::size_t n) {
     NodeTimes& node = times_[n];

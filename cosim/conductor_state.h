@@ -10,10 +10,12 @@
 #include "cosim/schedule/network.h"
 #include "cosim/schedule/schedule.h"
 #include "cosim/schedule/trial.h"
+#include "cosim/schedule/windows.h"
 #include "cosim/schedule/workers.h"
 #include "cosim/trace/trace_hash.h"
 #include "cosim/trace/trace_merger.h"
 
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -28,6 +30,14 @@ using WallClock = std::chrono::steady_clock;
 
 inline double seconds_since(WallClock::time_point start) {
     return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+/// Looks at several programs before one of them is waited for; some 20 us.
+inline constexpr int kLooksAtSeveral = 100;
+
+/// For heaps of what waits, earliest first.
+inline bool after(const TraceRecord& a, const TraceRecord& b) {
+    return a.key() > b.key();
 }
 
 class Conductor::State {
@@ -69,6 +79,9 @@ class Conductor::State {
     /// To the end, or to where the run pauses if that is earlier.
     void loop();
     Time pause_or_end() const { return std::min(end_, pause_); }
+    // Of whichever loop is under way.
+    Time floor() const { return in_windows_ ? windows_.floor() : schedule_.bounds().floor(); }
+    Time reached() const { return in_windows_ ? windows_.reached() : schedule_.reached(); }
     // conductor_snapshot.cpp
     void begin_anew();
     void run_and_save();
@@ -82,10 +95,20 @@ class Conductor::State {
     void take_interrupt();
     void wind_up();
     void take_wound_up(std::size_t n, Time before);
+    ScheduleLimits limits();
     void plan();
     void grant(std::size_t n, Time until, Time ahead);
     bool follow_up();
     void chop(std::size_t n, Time& until, Time& ahead);
+    // conductor_windows.cpp
+    void loop_in_windows();
+    void leave_windows();
+    void window();
+    void share_window();
+    void advance_shares();
+    bool advance_in_window(std::size_t n);
+    void resume_in_window();
+    void take_window(std::size_t n);
     void collect();
     bool work_here();
     void share_out();
@@ -114,6 +137,7 @@ class Conductor::State {
     void finish_trace();
     /// Among the pieces of work that helpers get, besides the nodes.
     std::size_t trace_piece() const { return handles_.size(); }
+    std::size_t share_piece() const { return handles_.size() + 1; }  ///< the first of as many as helpers
 
     void report_progress();
     bool stuck() const;
@@ -134,6 +158,10 @@ class Conductor::State {
     std::vector<Slot> slots_;
     std::vector<Time> pending_;
     Schedule schedule_;
+    Windows windows_;
+    std::vector<std::size_t> shares_;  ///< nodes of a window that any thread may advance
+    std::atomic<std::size_t> next_share_{0};
+    bool in_windows_ = false;  ///< the loop is that of conductor_windows.cpp
     std::vector<TraceRecord> deliveries_;
     std::vector<Change> changes_;
     std::vector<LinkStats> stats_;        ///< one a wire

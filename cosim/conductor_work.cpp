@@ -16,8 +16,6 @@ constexpr double kWorthSharing = 3000.0;  // ns
 constexpr double kWorthWaking = 15000.0;  // ns
 // The conductor works at least so many times as long as it planned while there is something to do.
 constexpr int kWorkByPlanning = 4;
-// Looks at several programs before one of them is waited for; some 20 us.
-constexpr int kLooksAtSeveral = 100;
 // How long to sleep where --realtime lets nobody go on.
 constexpr std::chrono::microseconds kPaceSleep{500};
 }  // namespace

@@ -35,6 +35,7 @@ class LocalNode : public NodeHandle {
         name_ = name;
         if (!node) throw RunError(fmt::format("node {}: nothing can make it", name_));
         ports_.assign(node->ports().begin(), node->ports().end());
+        suspendable_ = node->suspendable() != nullptr;
         node_ = std::make_unique<RunAhead>(std::move(node));
         node_->read_state(state_);
         has_state_ = node_->has_state();
@@ -58,6 +59,23 @@ class LocalNode : public NodeHandle {
         if (!done) return false;
         advanced_ = *done;
         node_->read_state(state_);
+        return true;
+    }
+
+    bool advance(Time until, const std::vector<Message>& inbox) override {
+        const Node& node = node_->node();
+        if (suspendable_) return NodeHandle::advance(until, inbox);
+        guarded("stopped", [&] { node_->advance_to(until, inbox, outbox_); });
+        advanced_ = {until, until, outbox_.size()};
+        for (const PortIndex port : linked_) {
+            PortState& state = state_.ports[port];
+            state.earliest_output = node.earliest_output(port);
+            state.lookahead = node.lookahead(port);
+            if (ports_[port].kind == PortKind::Uart) state.begun = node.begun(port);
+        }
+        state_.stop = node.stop();
+        state_.wound_up = node.wound_up();
+        state_.runs_ahead = node_->can_go_back();
         return true;
     }
 
@@ -104,7 +122,8 @@ class LocalNode : public NodeHandle {
     const std::vector<Message>* inbox_ = nullptr;
     const std::vector<PortEcho>* echoes_ = nullptr;
     Reach reach_;
-    bool begun_ = false;  ///< the work of the grant
+    bool begun_ = false;        ///< the work of the grant
+    bool suspendable_ = false;  ///< the node (Suspendable)
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace puckloop::cosim {
 
@@ -42,6 +43,12 @@ Network::Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const st
         throw InputError("", "", "too many links", "at most 65535");
     for (std::size_t l = 0; l < links.size(); ++l)
         attach(links[l], static_cast<std::uint16_t>(l));
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        std::vector<PortIndex> linked;
+        for (std::size_t p = 0; p < port_wire_[n].size(); ++p)
+            if (port_wire_[n][p] != kNobody) linked.push_back(static_cast<PortIndex>(p));
+        nodes[n]->set_linked(std::move(linked));
+    }
     has_unsettled_.assign(wires_.size(), false);
     ways_back_.resize(nodes.size());
     into_.resize(nodes.size());

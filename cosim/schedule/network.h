@@ -75,6 +75,9 @@ class Network {
     /// kNever. Throws RunError when a message is earlier than the node's EOT.
     void take_sent(std::size_t n, const std::vector<Message>& outbox, const Advanced& done, Time first_in,
                    std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
+    /// take_sent() and update() in one, for a node that has not run ahead since: everything it sent is final.
+    void take_final(std::size_t n, const std::vector<Message>& outbox, Time reached, Time first_in,
+                    std::vector<TraceRecord>& deliveries);
     /// Delivers what is foreseen and cannot change any more.
     void settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
     /// The first instant after everything that is final although its sender may still go back before it.
@@ -168,6 +171,7 @@ class Network {
     std::vector<std::vector<std::size_t>> into_;  ///< node -> wires that end there
     std::vector<Sent> sent_;                      ///< by port
     std::vector<Delivery> batch_;
+    std::vector<Change> changes_;
     std::uint64_t unlinked_ = 0;
 };
 

@@ -53,6 +53,46 @@ void Network::take_sent(std::size_t n, const std::vector<Message>& outbox, const
     }
 }
 
+void Network::take_final(std::size_t n, const std::vector<Message>& outbox, Time reached, Time first_in,
+                         std::vector<TraceRecord>& deliveries) {
+    const std::vector<std::size_t>& wires = port_wire_[n];
+    for (const Message& message : outbox) {
+        if (message.port >= wires.size())
+            throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
+                                       nodes_[n]->name(), message.port));
+        const std::size_t w = wires[message.port];
+        if (w == kNobody) {
+            if (nodes_[n]->ports()[message.port].kind != PortKind::Uart) ++unlinked_;
+            continue;
+        }
+        Wire& wire = wires_[w];
+        const Time time = delivery_time(message, wire.flight, wire.latency);
+        check_earliest_output(wire, message.time, time, first_in);
+        if (wire.faults.empty() && !wire.record) {
+            ++wire.sent;
+            deliveries.push_back(
+                {time, wire.link, wire.direction, wire.sequence++, FaultKind::None, message.payload});
+        } else {
+            pass_on(wire, {time, wire.to_port, message.payload}, deliveries, changes_);
+        }
+    }
+    changes_.clear();
+    const NodeState& state = nodes_[n]->state();
+    for (std::size_t p = 0; p < wires.size(); ++p) {
+        if (wires[p] == kNobody) continue;
+        Wire& wire = wires_[wires[p]];
+        const PortState& port = state.ports[p];
+        Channel& channel = channels_[wires[p]];
+        const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
+        wire.base = std::max(std::min(wire.base, later(first_in, channel.lookahead)),
+                             later(std::max(port.earliest_output, begun), wire.latency));
+        channel.base = wire.base;
+        channel.lookahead = later(std::max(port.lookahead, wire.flight), wire.latency);
+        channel.instant = port.lookahead == 0;
+        update_loop(wires[p]);
+    }
+}
+
 /// The first message that is not what was foreseen; how many were, if all are.
 std::size_t Network::first_difference(const Wire& wire, const Sent& sent) const {
     const auto pair =

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace puckloop::cosim {
@@ -77,6 +78,15 @@ class NodeHandle {
     virtual bool poll(bool wait) = 0;
     /// False where poll() does the work itself.
     virtual bool elsewhere() const { return false; }
+    /// What grant() and poll() do with one `until`, in this process and where nothing is foreseen: the short
+    /// way for cosim/schedule/windows.h. Of state() only what linked ports state is read, and stop and
+    /// wound_up. False: it waits for its program, poll() goes on.
+    virtual bool advance(Time until, const std::vector<Message>& inbox) {
+        grant({until, until, until}, inbox, {});
+        return poll(false);
+    }
+    /// The ports that lead somewhere.
+    void set_linked(std::vector<PortIndex> ports) { linked_ = std::move(ports); }
     /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
     /// then as of after that.
     virtual void wind_up(int signal) = 0;
@@ -97,6 +107,7 @@ class NodeHandle {
   protected:
     std::string name_;
     std::vector<Port> ports_;
+    std::vector<PortIndex> linked_;
     NodeState state_;
     std::vector<Message> outbox_;
     Advanced advanced_;

@@ -5,8 +5,6 @@
 namespace puckloop::cosim {
 
 namespace {
-// Free stretch, as a part of the stop latency, for which a node nobody waits for is granted all the same.
-constexpr Time kStretchDivisor = 2;
 // To run ahead at least and at most: what is wrong is executed again from the mark on, so that a surprise
 // every few milliseconds (a program that polls a board) costs a stretch each.
 constexpr Time kShortestAhead = 40 * kMicrosecond;

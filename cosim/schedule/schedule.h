@@ -27,6 +27,9 @@ struct ScheduleLimits {
     Time stop_latency = 0;  ///< no node runs further ahead of the last one
 };
 
+/// Free stretch, as a part of the stop latency, for which a node nobody waits for is granted all the same.
+inline constexpr Time kStretchDivisor = 2;
+
 /// A node that can go back runs ahead on what is foreseen, by a stretch that begins short when something was
 /// wrong and grows by a third each time that it was not. It does so at once, the others wait for it: what
 /// they are to receive is then known. One that was taken by surprise waits for the one that did it. A

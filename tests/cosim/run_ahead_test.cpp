@@ -389,6 +389,16 @@ static void check_ahead(const Run& run, std::uint64_t seed) {
     const Outcome expected = run(&plain);
     INFO(expected.text);
     REQUIRE(expected.reason == EndReason::Duration);
+    for (const unsigned subset : {0u, ~0u}) {
+        Run in_windows = with_ahead(run, subset);
+        in_windows.options.windows = true;
+        in_windows.options.threads = 1 + static_cast<unsigned>(seed % 2);
+        Recorder recorder;
+        const Outcome outcome = in_windows(&recorder);
+        INFO("in windows, seed " << seed << ": " << outcome.text);
+        check_same(expected, outcome);
+        REQUIRE((recorder.records == plain.records));
+    }
     for (const unsigned subset : {~0u, 1u, 6u, 21u}) {
         Recorder recorder;
         const Outcome outcome = with_ahead(run, subset)(&recorder);

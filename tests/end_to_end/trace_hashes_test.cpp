@@ -78,7 +78,7 @@ void check_hash(const Known& known, Words ways) {
     CHECK(bench.report("o")["trace_sha256"] == known.sha256);
 }
 
-/// In this process or one per node, with grants cut at random.
+/// In this process, in windows where the seed is even, or one per node, with grants cut at random.
 std::string chopped(const Known& known, bool in_process, unsigned threads, std::uint64_t seed) {
     const Workbench bench;
     tools::RunRequest request;
@@ -92,6 +92,7 @@ std::string chopped(const Known& known, bool in_process, unsigned threads, std::
     options.duration = cosim::from_seconds(*request.duration);
     options.in_process = in_process;
     options.threads = threads;
+    options.windows = in_process && seed % 2 == 0;
     options.seed = setup.scenario.seed;
     options.node_command = {PUCKLOOP_PROGRAM};
     options.chop_seed = seed;

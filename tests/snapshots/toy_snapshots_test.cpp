@@ -97,6 +97,7 @@ TEST_CASE("a run goes on from drawn instants as if it had never stopped") {
             times.push_back(1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(whole.simulated))));
         Run saving = run;
         saving.options.chop_seed = seed;  // snapshots do not depend on how grants were cut
+        saving.options.windows = seed % 2 == 0;
         Outcome outcome;
         const std::vector<RunSnapshot> snapshots = saved(saving, times, outcome);
         CHECK(outcome.trace_sha256 == whole.trace_sha256);
@@ -105,6 +106,7 @@ TEST_CASE("a run goes on from drawn instants as if it had never stopped") {
             Run again = run;
             again.options.in_process = i != 0 || seed % 4 != 0;  // processes are slow to start
             again.options.threads = i % 2 == 0 ? 1 : 2;
+            again.options.windows = (seed + i) % 3 == 0;
             check_goes_on(again, snapshots[i], whole, all.records);
         }
         // Saved again by a run that went on.

@@ -43,6 +43,7 @@ Conducted conduct(const Workbench& bench, const std::filesystem::path& scenario,
     request.in_process = !way.process_per_node;
     cosim::RunOptions options;
     options.threads = way.threads;
+    options.windows = way.windows;
     if (way.chop != 0) options.chop_seed = way.chop;
     std::optional<cosim::RunSnapshot> snapshot;
     if (way.from) {

@@ -17,6 +17,7 @@ namespace puckloop::tests {
 struct Way {
     std::uint64_t chop = 0;                ///< grants are cut at random places, by this seed; 0: they are not
     unsigned threads = 1;                  ///< of one process
+    bool windows = false;                  ///< nothing runs ahead
     bool process_per_node = false;         ///< `threads` is 1 then
     std::optional<cosim::Time> from = {};  ///< goes on from a snapshot of that instant
 };

@@ -22,7 +22,7 @@ std::uint64_t number_from(const char* variable, std::uint64_t fallback) {
     return given != nullptr ? std::strtoull(given, nullptr, 10) : fallback;
 }
 
-/// A snapshot of the first instant of a fault, or of any; two threads; a process per node.
+/// A snapshot of the first instant of a fault, or of any; two threads; a process per node; in windows or not.
 Way another_way(Draw& draw, const std::filesystem::path& scenario, double seconds) {
     Way way;
     way.chop = draw.one_in(2) ? 1 + draw.below(1'000'000) : 0;
@@ -41,12 +41,13 @@ Way another_way(Draw& draw, const std::filesystem::path& scenario, double second
     default:
         way.from = std::max<cosim::Time>(1, draw.of(begins));
     }
+    way.windows = draw.one_in(2);
     return way;
 }
 
 std::string shown(const Way& way) {
-    return fmt::format("chop {}, threads {}, processes {}, from {}", way.chop, way.threads,
-                       way.process_per_node, way.from ? cosim::to_seconds(*way.from) : -1);
+    return fmt::format("chop {}, threads {}, windows {}, processes {}, from {}", way.chop, way.threads,
+                       way.windows, way.process_per_node, way.from ? cosim::to_seconds(*way.from) : -1);
 }
 
 void check_seed(const char* kind, std::uint64_t seed, DrawnScenario (*draw_one)(Draw&)) {

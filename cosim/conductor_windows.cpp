@@ -1,0 +1,150 @@
+// Nodes of this process side by side, a window at a time: each goes as far as is sure, and nothing is
+// foreseen, marked or taken back. Nodes that any thread may advance are shared with helpers where a window
+// has enough of them; what they sent is taken by this thread alone, once all are done.
+
+#include "cosim/conductor_state.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace puckloop::cosim {
+
+namespace {
+// Fewer nodes are done before a helper has begun.
+constexpr std::size_t kWorthSharingNodes = 4;
+}  // namespace
+
+void Conductor::State::loop_in_windows() {
+    pending_.resize(slots_.size());
+    windows_.connect(network_->channels(), slots_.size());
+    while (true) {
+        take_interrupt();
+        for (std::size_t n = 0; n < slots_.size(); ++n)
+            pending_[n] = slots_[n].queue.empty() ? kNever : slots_[n].queue.front().time;
+        windows_.plan(pending_, times_, limits());
+        if (windows_.complete()) return;
+        if (windows_.chosen().empty()) return leave_windows();
+        window();
+        if (merger_.full()) release_trace_beside(std::min(floor(), end_));
+        report_progress();
+    }
+}
+
+/// All wait for each other, as far as a plain grant goes. A node that hands something out at T and answers
+/// later than at once has it settled before it knows what comes in at T: nodes that run ahead show such
+/// things, and find out whether the wait is for good.
+void Conductor::State::leave_windows() {
+    in_windows_ = false;
+    for (std::size_t n = 0; n < slots_.size(); ++n) {
+        slots_[n].stale = true;
+        times_[n].runs_ahead = may_run_ahead(n);
+        times_[n].horizon = handles_[n]->state().horizon;
+    }
+    loop();
+}
+
+void Conductor::State::window() {
+    shares_.clear();
+    const auto steps = windows_.chosen();
+    // Programs compute in processes of their own meanwhile.
+    for (const auto& [n, to] : steps) {
+        Time until = to, ahead = to;
+        if (chop_) chop(n, until, ahead);
+        slots_[n].asked = slots_[n].asked_ahead = until;
+        ++grants_;
+        ++slots_[n].grants;
+        if (specs_[n].any_thread) {
+            shares_.push_back(n);
+            continue;
+        }
+        current_ = n;
+        if (!advance_in_window(n)) suspended_.push_back(n);
+    }
+    share_window();
+    for (const auto& [n, to] : steps)
+        if (std::find(suspended_.begin(), suspended_.end(), n) == suspended_.end()) take_window(n);
+    resume_in_window();
+}
+
+/// Advances shares_, with helpers where that serves.
+void Conductor::State::share_window() {
+    next_share_.store(0, std::memory_order_relaxed);
+    std::size_t open = 0;
+    if (shares_.size() >= kWorthSharingNodes && workers_->available())
+        for (; open < workers_->helpers(); ++open)
+            workers_->submit(share_piece() + open, true);
+    advance_shares();
+    if (open == 0) return;
+    while (workers_->do_one()) {  // what no helper has begun
+    }
+    while (true) {
+        done_.clear();
+        take_done();
+        open -= done_.size();
+        if (open == 0) return;
+        workers_->wait();
+    }
+}
+
+/// On any thread.
+void Conductor::State::advance_shares() {
+    std::size_t share = 0;
+    while ((share = next_share_.fetch_add(1, std::memory_order_relaxed)) < shares_.size()) {
+        const std::size_t n = shares_[share];
+        try {
+            advance_in_window(n);
+        } catch (...) {
+            failures_[n] = std::current_exception();
+        }
+    }
+}
+
+/// As far as it was asked to; false where it waits for its program.
+bool Conductor::State::advance_in_window(std::size_t n) {
+    Slot& slot = slots_[n];
+    slot.inbox.clear();
+    while (!slot.queue.empty() && slot.queue.front().time < slot.asked) {
+        const TraceRecord& record = slot.queue.front();
+        slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
+        std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
+        slot.queue.pop_back();
+    }
+    return handles_[n]->advance(slot.asked, slot.inbox);
+}
+
+/// The rest of the window for those that wait for their programs.
+void Conductor::State::resume_in_window() {
+    for (int looks = 0; !suspended_.empty(); ++looks) {
+        done_.clear();
+        resume(suspended_.size() == 1 || looks >= kLooksAtSeveral);
+        for (const std::size_t n : std::exchange(done_, {}))
+            take_window(n);
+    }
+}
+
+void Conductor::State::take_window(std::size_t n) {
+    current_ = n;
+    if (failures_[n]) std::rethrow_exception(failures_[n]);
+    Slot& slot = slots_[n];
+    const Time before = times_[n].granted;
+    const Time reached = handles_[n]->advanced().reached;
+    network_->take_final(n, handles_[n]->outbox(), reached,
+                         slot.inbox.empty() ? kNever : slot.inbox.front().time, deliveries_);
+    windows_.update(n, network_->channels());
+    times_[n].granted = times_[n].ahead = reached;
+    for (const TraceRecord& record : deliveries_) {
+        merger_.add(record);
+        if (lost(record)) continue;
+        const std::size_t to = network_->wire(record).to;
+        Slot& receiver = slots_[to];
+        if (record.time < receiver.asked) too_late(n, to, record.time);
+        receiver.queue.push_back(record);
+        std::push_heap(receiver.queue.begin(), receiver.queue.end(), after);
+    }
+    deliveries_.clear();
+    take_stop(n, before);
+    take_wound_up(n, before);
+}
+
+}  // namespace puckloop::cosim

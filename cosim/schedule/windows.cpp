@@ -1,0 +1,124 @@
+#include "cosim/schedule/windows.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace puckloop::cosim {
+
+void Windows::connect(const std::vector<Channel>& channels, std::size_t nodes) {
+    edges_.clear();
+    first_.clear();
+    for (std::size_t n = 0; n < nodes; ++n) {
+        first_.push_back(edges_.size());
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            if (channels[c].from == n)
+                edges_.push_back({static_cast<std::uint32_t>(channels[c].to), static_cast<std::uint32_t>(c)});
+    }
+    first_.push_back(edges_.size());
+    base_.resize(nodes);
+    lookahead_.resize(nodes);
+    order_.resize(nodes);
+    std::iota(order_.begin(), order_.end(), 0U);
+    for (std::size_t n = 0; n < nodes; ++n)
+        update(n, channels);
+}
+
+void Windows::update(std::size_t n, const std::vector<Channel>& channels) {
+    Time base = kNever, lookahead = kNever;
+    for (std::size_t e = first_[n]; e < first_[n + 1]; ++e) {
+        Edge& edge = edges_[e];
+        edge.base = channels[edge.channel].base;
+        edge.lookahead = channels[edge.channel].lookahead;
+        base = std::min(base, edge.base);
+        lookahead = std::min(lookahead, edge.lookahead);
+    }
+    base_[n] = base;
+    lookahead_[n] = lookahead;
+}
+
+void Windows::plan(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
+                   const ScheduleLimits& limits) {
+    reached_ = limits.end;
+    for (const NodeTimes& node : nodes)
+        reached_ = std::min(reached_, node.granted);
+    complete_ = reached_ >= limits.end;
+    chosen_.clear();
+    find_earliest(pending);
+    find_limits();
+    if (complete_) return;
+    const Time ceiling = std::min(later(reached_, limits.stop_latency), limits.end);
+    choose(pending, nodes, limits.end, ceiling, limits.stop_latency / kStretchDivisor);
+}
+
+/// The first instant at which something reaches each node: from EOTs and what is pending along the shortest
+/// ways. Begun with the earliest, hardly a node comes twice.
+void Windows::find_earliest(const std::vector<Time>& pending) {
+    earliest_ = pending;
+    for (const Edge& edge : edges_)
+        earliest_[edge.to] = std::min(earliest_[edge.to], edge.base);
+    for (std::size_t i = 1; i < order_.size(); ++i) {
+        const std::uint32_t n = order_[i];
+        std::size_t place = i;
+        for (; place > 0 && earliest_[order_[place - 1]] > earliest_[n]; --place)
+            order_[place] = order_[place - 1];
+        order_[place] = n;
+    }
+    relaxed_.assign(earliest_.size(), kNever);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const std::uint32_t n : order_) {
+            const Time time = earliest_[n];
+            if (time >= relaxed_[n]) continue;
+            relaxed_[n] = time;
+            if (lookahead_[n] == kNever) continue;
+            for (std::size_t e = first_[n]; e < first_[n + 1]; ++e) {
+                const Edge& edge = edges_[e];
+                const Time there = later(time, edge.lookahead);
+                if (there >= earliest_[edge.to]) continue;
+                earliest_[edge.to] = there;
+                changed = true;
+            }
+        }
+    }
+}
+
+void Windows::find_limits() {
+    limit_.assign(earliest_.size(), kNever);
+    floor_ = kNever;
+    for (std::size_t n = 0; n < earliest_.size(); ++n)
+        for (std::size_t e = first_[n]; e < first_[n + 1]; ++e) {
+            const Edge& edge = edges_[e];
+            const Time time = std::min(edge.base, later(earliest_[n], edge.lookahead));
+            limit_[edge.to] = std::min(limit_[edge.to], time);
+            floor_ = std::min(floor_, time);
+        }
+}
+
+void Windows::choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes, Time end,
+                     Time ceiling, Time stretch) {
+    const Time window = later(reached_, kStretchDivisor * stretch);
+    bool last_holds_up = false;
+    // When others may see something of each next; and how far the first one may go: whatever happens within
+    // that time happens beside it.
+    next_.resize(nodes.size());
+    std::size_t first = kNobody;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        next_[n] = std::min(base_[n], later(pending[n], lookahead_[n]));
+        if (nodes[n].granted >= end) continue;
+        if (first == kNobody || next_[n] < next_[first]) first = n;
+        last_holds_up = last_holds_up || limit_[n] > window;
+    }
+    const Time round = std::max(next_[first], limit_[first]);
+    for (const bool any : {false, true}) {
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            const Time until = std::min(limit_[n], ceiling), granted = nodes[n].granted;
+            if (until <= granted) continue;
+            if (any || next_[n] <= round || until == end || (last_holds_up && granted == reached_) ||
+                until - granted >= stretch)
+                chosen_.push_back({n, until});
+        }
+        if (!chosen_.empty()) return;
+    }
+}
+
+}  // namespace puckloop::cosim

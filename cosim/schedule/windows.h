@@ -1,0 +1,66 @@
+#pragma once
+// Which nodes go next and how far, where nothing is foreseen and a grant is a plain call: all that another
+// one may wait for, side by side, each as far as is sure. The same bounds as cosim/schedule/bounds.h, over
+// flat arrays: they are found some hundred thousand times a simulated second.
+
+#include "cosim/core/time.h"
+#include "cosim/schedule/bounds.h"
+#include "cosim/schedule/schedule.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::cosim {
+
+class Windows {
+  public:
+    struct Step {
+        std::size_t node = 0;
+        Time until = 0;
+    };
+
+    /// Who can send to whom; that stays so.
+    void connect(const std::vector<Channel>& channels, std::size_t nodes);
+    /// What leaves node `n` has another EOT or lookahead.
+    void update(std::size_t n, const std::vector<Channel>& channels);
+    /// `pending`: of each node, the first message that it has not handled, or kNever.
+    void plan(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
+              const ScheduleLimits& limits);
+
+    /// Empty only where all wait for each other for good.
+    const std::vector<Step>& chosen() const { return chosen_; }
+    /// Every node has reached the end.
+    bool complete() const { return complete_; }
+    /// Time every node has reached.
+    Time reached() const { return reached_; }
+    /// Nothing not yet known can reach node `n` before this.
+    Time limit(std::size_t n) const { return limit_[n]; }
+    /// No message still to come on any channel is delivered before this.
+    Time floor() const { return floor_; }
+
+  private:
+    struct Edge {
+        std::uint32_t to = 0;
+        std::uint32_t channel = 0;
+        Time base = 0;
+        Time lookahead = 0;
+    };
+
+    void find_earliest(const std::vector<Time>& pending);
+    void find_limits();
+    void choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes, Time end, Time ceiling,
+                Time stretch);
+
+    std::vector<Edge> edges_;             ///< by sender
+    std::vector<std::size_t> first_;      ///< of each sender's edges; one more at the end
+    std::vector<Time> base_, lookahead_;  ///< of each sender, the least of its edges'
+    std::vector<Time> earliest_, limit_, relaxed_, next_;
+    std::vector<std::uint32_t> order_;  ///< nodes by their earliest time, about
+    std::vector<Step> chosen_;
+    bool complete_ = false;
+    Time reached_ = 0;
+    Time floor_ = kNever;
+};
+
+}  // namespace puckloop::cosim
