@@ -152,6 +152,8 @@ void LinuxNode::fork(Client& client) {
     made.call_name[0] = '\0';
     made.computed = made.children_computed = 0;
     made.faults = 0;
+    for (wire::SignalOrigin& origin : made.origins)
+        origin = {};
     wire::Channel& channel = *new (wire::channel_of(launcher_->page(), slot)) wire::Channel;
     auto child = std::make_unique<Client>();
     child->slot = slot;

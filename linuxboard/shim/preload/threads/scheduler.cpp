@@ -229,6 +229,7 @@ void route_signal() {
             const std::uint64_t bit = std::uint64_t{1} << number;
             if ((pending_signals & bit) == 0 || sigismember(thread->awaited_signals, number) != 1) continue;
             pending_signals &= ~bit;
+            if ((from_node & bit) == 0) own().origins[number] = {};  // an alarm's
             from_node &= ~bit;
             thread->taken_signal = number;
             thread->awaited_signals = nullptr;
