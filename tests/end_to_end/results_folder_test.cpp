@@ -94,6 +94,7 @@ TEST_CASE("a mark is looked into: what it does not list is a user's") {
         check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {name, why});
     };
     SECTION("an empty mark") {
+        fs::create_directories(bench.out("o"));
         bench.file("o/.puckloop", "");
         bench.file("o/trace.csv", "mine\n");
         refused("trace.csv", "that does not list it");
