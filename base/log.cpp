@@ -1,6 +1,7 @@
 #include "base/log.h"
 
 #include "base/error.h"
+#include "base/new_file.h"
 #include "base/plain_text.h"
 
 #include <spdlog/sinks/base_sink.h>
@@ -82,9 +83,9 @@ void start(const std::string& name, const Settings& settings) {
     int descriptor = STDERR_FILENO;
     if (!settings.file.empty()) {
         log.settings.file = std::filesystem::absolute(settings.file).string();  // whoever changes the folder
-        descriptor = ::open(settings.file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+        descriptor = open_new_file(settings.file, O_APPEND);
         if (descriptor < 0)
-            throw InputError(settings.file, "", fmt::format("cannot be opened: {}", std::strerror(errno)),
+            throw InputError(settings.file, "", "cannot be opened: " + why_not_written(errno),
                              "a log file that can be written");
     }
     log.logger = std::make_shared<spdlog::logger>(name, std::make_shared<LineSink>(descriptor));

@@ -15,6 +15,21 @@ if(PUCKLOOP_ASAN)
   target_link_options(puckloop_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# Some targets alone with the sanitizers, in an otherwise usual build: an eighth of what `asan` compiles. Preset `sanitized`.
+set(PUCKLOOP_SANITIZED "" CACHE STRING "Targets to build with the address and undefined-behaviour sanitizers")
+function(puckloop_sanitize name)
+  target_compile_options(${name} PRIVATE -O0 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+                                         -Wno-maybe-uninitialized)
+  target_link_options(${name} PUBLIC -fsanitize=address,undefined)
+endfunction()
+# The suffix of what `name` shares with others: precompiled headers have to be compiled as it is.
+function(puckloop_variant name result)
+  set(${result} "" PARENT_SCOPE)
+  if(name IN_LIST PUCKLOOP_SANITIZED)
+    set(${result} "_sanitized" PARENT_SCOPE)
+  endif()
+endfunction()
+
 option(PUCKLOOP_TSAN "Build with the thread sanitizer" OFF)
 if(PUCKLOOP_TSAN)
   target_compile_options(puckloop_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan)
@@ -33,6 +48,12 @@ target_compile_definitions(puckloop_options INTERFACE $<TARGET_PROPERTY:fmt::fmt
 add_library(puckloop_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
 target_link_libraries(puckloop_precompiled PRIVATE puckloop_options)
 target_precompile_headers(puckloop_precompiled PRIVATE ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
+if(PUCKLOOP_SANITIZED)
+  add_library(puckloop_precompiled_sanitized OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+  target_link_libraries(puckloop_precompiled_sanitized PRIVATE puckloop_options)
+  target_precompile_headers(puckloop_precompiled_sanitized PRIVATE ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
+  puckloop_sanitize(puckloop_precompiled_sanitized)
+endif()
 
 # Reading headers was nearly half of a build: some sources of a target are compiled together as one. A file still includes
 # what it uses, and compiles alone: the presets without this option prove it. File-level names of one target must differ.
@@ -52,7 +73,11 @@ function(puckloop_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC puckloop_options ${ARG_LINK})
-  target_precompile_headers(${name} REUSE_FROM puckloop_precompiled)
+  puckloop_variant(${name} variant)
+  if(variant)
+    puckloop_sanitize(${name})
+  endif()
+  target_precompile_headers(${name} REUSE_FROM puckloop_precompiled${variant})
   puckloop_unity(${name})
 endfunction()
 
@@ -78,7 +103,11 @@ function(puckloop_test name)
   target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
   target_compile_options(${name} PRIVATE ${PUCKLOOP_TEST_OPTIONS})
   set_target_properties(${name} PROPERTIES PUCKLOOP_IS_TEST ON)
-  target_precompile_headers(${name} REUSE_FROM puckloop_test_precompiled)
+  puckloop_variant(${name} variant)
+  if(variant)
+    puckloop_sanitize(${name})
+  endif()
+  target_precompile_headers(${name} REUSE_FROM puckloop_test_precompiled${variant})
   puckloop_quick_link(${name})
   # A test that lacks what it needs (real images, a tool) prints "skipped: reason" or "reason: skipped", and CTest counts it
   # so. The bare word is not enough: it occurs in names of tests and in results, and would hide their failures.

@@ -156,14 +156,30 @@ void set_threads(cosim::RunOptions& options, const RunSetup& setup, const RunReq
 
 }  // namespace
 
-void make_work_folders(const RunSetup& setup) {
+namespace {
+
+/// Below the results: what a program works in.
+std::vector<std::string> work_folders(const RunSetup& setup) {
     std::vector<std::string> names;
     for (const auto& robot : setup.scenario.robots)
         if (robot.linux_board) names.push_back(robot.linux_board->folder);
     if (const auto& place = setup.scenario.coordinator; place && place->program)
         names.push_back(place->program->folder);
-    for (const std::string& name : names) {
-        if (name.empty()) continue;
+    std::erase(names, "");
+    return names;
+}
+
+}  // namespace
+
+std::vector<std::string> kept_results(const RunSetup& setup) {
+    std::vector<std::string> names{"control.json", "events.toml"};
+    for (const std::string& folder : work_folders(setup))
+        names.push_back(std::filesystem::path(folder).begin()->string());
+    return names;
+}
+
+void make_work_folders(const RunSetup& setup) {
+    for (const std::string& name : work_folders(setup)) {
         const auto folder = setup.out / name;
         std::error_code error;
         std::filesystem::create_directories(folder, error);
@@ -176,7 +192,7 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
                             const cosim::InterruptGuard* interrupt, bool driven_by_client) {
     check_files(planned);
     const std::vector<UsedFile> files = used_files(planned);
-    const ResultsFolder folder(planned.out, result_files(planned));
+    const ResultsFolder folder(planned.out, result_files(planned), kept_results(planned));
     make_work_folders(planned);
     ReservedFile report(planned.out / "report.json", kReportBytes);
 

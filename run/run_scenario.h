@@ -12,6 +12,9 @@ namespace puckloop::tools {
 /// Every name that nodes and the run itself may give a file in the results folder.
 std::vector<std::string> result_files(const RunSetup& setup);
 
+/// What else a run has there, files and folders, which the next run does not remove.
+std::vector<std::string> kept_results(const RunSetup& setup);
+
 /// The folders below the results that programs work in. Throws InputError.
 void make_work_folders(const RunSetup& setup);
 

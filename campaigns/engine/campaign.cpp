@@ -1,5 +1,6 @@
 #include "campaigns/engine/campaign.h"
 
+#include "base/claimed_folder.h"
 #include "base/error.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/html.h"
@@ -7,9 +8,11 @@
 #include "campaigns/engine/table.h"
 #include "campaigns/engine/worker.h"
 #include "campaigns/jobs/folder_lock.h"
+#include "campaigns/jobs/isolated.h"
 #include "campaigns/jobs/pool.h"
 #include "campaigns/jobs/slurm.h"
 #include "cosim/interrupt.h"
+#include "run/report/results_folder.h"
 
 #include <fmt/format.h>
 
@@ -29,7 +32,7 @@ const std::vector<std::string> kResults{"campaign.db", "campaign.db-journal", "n
                                         "boots",       "snapshots",           "slurm",
                                         "work",        "results.csv",         "report.html"};
 
-/// A case that three workers died of is a failure of puckloop's.
+/// A case whose process died three times is a failure of puckloop's.
 nlohmann::json deadly_verdict(const jobs::Job& job, const std::string& why) {
     return to_json(failed_verdict(case_from_json(job.what).faults.size(), why));
 }
@@ -123,7 +126,7 @@ class Conduct {
         if (!store_->note(key)) {
             Case nominal;
             nominal.seed = seed;
-            execute(campaign_, nominal, folder, {boots_folder(out_)});
+            execute_nominal(nominal, folder);
         }
         Profile profile = read_profile(folder);
         if (!profile.report.value("success", false))
@@ -140,6 +143,26 @@ class Conduct {
         fmt::print(stderr, "nominal run: {:.3f} s simulated, seed {}\n",
                    profile.report.value("simulated_s", 0.0), seed);
         nominals_.emplace(seed, std::move(profile));
+    }
+
+    /// Again if something outside ended it, as a case is.
+    void execute_nominal(const Case& nominal, const fs::path& folder) const {
+        for (int tries = 1;; ++tries) {
+            std::string why;
+            try {
+                return execute(campaign_, nominal, folder, {boots_folder(out_)});
+            } catch (const jobs::Killed& killed) {
+                why = killed.what();
+            } catch (const PuckloopFailed& failure) {
+                throw RunError(
+                    fmt::format("the nominal run with seed {} failed: {}", nominal.seed, failure.what()));
+            }
+            if (*interrupt_.flag() != 0 || tries == jobs::kTries)
+                throw RunError(
+                    fmt::format("the nominal run with seed {}, {} {}: {}; the same command goes on",
+                                nominal.seed, tries, tries == 1 ? "try" : "tries", why));
+            fmt::print(stderr, "puckloop: nominal run, seed {}: {}: it is run again\n", nominal.seed, why);
+        }
     }
 
     /// Of the nominal runs, before the faults of these cases begin.
@@ -209,7 +232,9 @@ class Conduct {
         return [this](int id, const nlohmann::json& verdict) { store_->add_result(id, verdict); };
     }
     jobs::Crew crew() const { return {{"faults", "worker", options_.file.string(), out_.string()}}; }
-    jobs::SlurmOptions slurm() const { return {crew(), out_, options_.tasks, interrupt_.flag()}; }
+    jobs::SlurmOptions slurm() const {
+        return {crew(), out_, options_.tasks, interrupt_.flag(), deadly_verdict};
+    }
     int workers() const {
         return options_.jobs > 0 ? options_.jobs
                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -262,8 +287,7 @@ Verdict replay(const Results& results, int id, const fs::path& folder) {
         throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
                          "a case of results.csv that was run");
     std::error_code failed;
-    if (fs::exists(fs::symlink_status(folder, failed)) && !fs::is_empty(folder, failed) &&
-        !fs::exists(folder / ".puckloop", failed))
+    if (fs::exists(fs::symlink_status(folder, failed)) && !holds_only_results(folder, tools::kRunMark))
         throw InputError(folder.string(), "", "holds other things than a run's results, and would be emptied",
                          "--out with a folder of its own");
     // Whole, not from a snapshot: a second opinion.

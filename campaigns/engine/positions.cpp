@@ -50,13 +50,13 @@ bool among(const json& bytes, const std::string& value) {
 
 }  // namespace
 
-std::vector<std::size_t> records_of(const Sender& sender, double after) {
+std::vector<std::size_t> records_of(const Sender& sender) {
     std::vector<std::size_t> begins;
     double idle_from = -1;
     for (std::size_t i = 0; i < sender.times.size(); ++i) {
         const bool starts = i == 0 || sender.times[i] > idle_from + kPause * sender.frame_s[i];
         idle_from = sender.times[i] + sender.frame_s[i];
-        if (starts && sender.times[i] >= after) begins.push_back(i);
+        if (starts) begins.push_back(i);
     }
     begins.push_back(sender.times.size());
     return begins;
@@ -70,20 +70,26 @@ std::optional<std::pair<protocols::EpuckRecord, std::size_t>>
 epuck_place(const std::vector<std::size_t>& begins, std::size_t record, std::size_t byte,
             const std::string& from) {
     using protocols::EpuckRecord;
-    const auto length = [&](std::size_t number) { return begins[number + 1] - begins[number]; };
-    const std::size_t here = length(record);
+    const std::size_t here = begins[record + 1] - begins[record];
     if (from.ends_with(".pic"))
         return here == size_of(EpuckRecord::Sensors) ? std::optional(std::pair(EpuckRecord::Sensors, byte))
                                                      : std::nullopt;
-    const std::size_t whole = size_of(EpuckRecord::Actuators);
-    if (here == whole) return std::pair(EpuckRecord::Actuators, byte);
-    // Its last byte may go by itself, as ARGoS' and the project's own programs write it.
-    const bool last_follows = record + 2 < begins.size() && length(record + 1) == 1;
-    if (here == whole - 1 && last_follows) return std::pair(EpuckRecord::Actuators, byte);
-    if (here == 1 && record > 0 && length(record - 1) == whole - 1)
-        return std::pair(EpuckRecord::Actuators, whole - 1);
+    if (here == size_of(EpuckRecord::Actuators)) return std::pair(EpuckRecord::Actuators, byte);
     if (here == size_of(EpuckRecord::Session)) return std::pair(EpuckRecord::Session, byte);
     return std::nullopt;
+}
+
+/// A command's last byte may go by itself, as ARGoS' and the project's own programs write it: it is of the
+/// same record.
+void join_last_bytes(std::vector<std::size_t>& begins) {
+    const std::size_t whole = size_of(protocols::EpuckRecord::Actuators);
+    std::vector<std::size_t> joined;
+    for (std::size_t i = 0; i < begins.size(); ++i) {
+        const bool last_byte = i > 0 && i + 1 < begins.size() && begins[i + 1] - begins[i] == 1 &&
+                               begins[i] - begins[i - 1] == whole - 1;
+        if (!last_byte) joined.push_back(begins[i]);
+    }
+    begins = std::move(joined);
 }
 
 /// The other end of a Linux board's line sends sensor records: they speak that protocol.
@@ -92,7 +98,7 @@ bool speaks_epuck(const std::string& link, const Profile& nominal) {
     const std::string board = link.substr(0, link.size() - std::string(".uart").size()) + ".pic";
     const auto sender = nominal.senders.find(sender_name(link, board));
     if (sender == nominal.senders.end()) return false;
-    const std::vector<std::size_t> begins = records_of(sender->second, 0);
+    const std::vector<std::size_t> begins = records_of(sender->second);
     for (std::size_t i = 0; i + 1 < begins.size(); ++i)
         if (begins[i + 1] - begins[i] == protocols::size_of(protocols::EpuckRecord::Sensors)) return true;
     return false;
@@ -105,9 +111,13 @@ std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const 
     const auto found = nominal.senders.find(name);
     static const Sender kNobody{};
     const Sender& sender = found == nominal.senders.end() ? kNobody : found->second;
-    const std::vector<std::size_t> begins = records_of(sender, sweep.after);
+    std::vector<std::size_t> begins = records_of(sender);
     const std::string from = value_text(fault["from"]);
     const bool has_fields = speaks_epuck(value_text(fault["link"]), nominal);
+    if (has_fields && !from.ends_with(".pic")) join_last_bytes(begins);
+    std::erase_if(begins, [&](std::size_t first) {
+        return first < sender.times.size() && sender.times[first] < sweep.after;
+    });
     std::vector<Position> positions;
     for (const int record : sweep.records) {
         const auto r = static_cast<std::size_t>(record);

@@ -17,8 +17,8 @@ struct Position {
 /// The sweep's bytes and records of what `from` sends on `link`, both keys of the fault.
 std::vector<Position> positions_of(const Sweep& sweep, const nlohmann::json& fault, const Profile& nominal);
 
-/// Frames of a sender from `after` (s) on as records, bytes without a pause of more than two byte times:
-/// index of the first byte of each, and the number of frames at the end.
-std::vector<std::size_t> records_of(const Sender& sender, double after);
+/// Frames of a sender as records, bytes without a pause of more than two byte times: index of the first byte
+/// of each, and the number of frames at the end.
+std::vector<std::size_t> records_of(const Sender& sender);
 
 }  // namespace puckloop::faults

@@ -1,6 +1,7 @@
 #include "campaigns/engine/table.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/jobs/result_files.h"
 
@@ -128,7 +129,8 @@ std::string summary(const Results& results) {
                             finding->cases.size(), finding->cases.size() == 1 ? "" : "s",
                             replay_command(results, finding->smallest->one.id));
     }
-    return text + fmt::format("results in {}: report.html, results.csv, campaign.db\n", results.out.string());
+    return text + fmt::format("results in {}: report.html, results.csv, campaign.db\n",
+                              plain_text(results.out.string(), kLongestMessage));
 }
 
 std::string case_text(const Results& results, int id) {

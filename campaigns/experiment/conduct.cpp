@@ -35,7 +35,7 @@ fs::path run_folder(const fs::path& out, int id) {
 const std::vector<std::string> kResults{
     "experiment.db", "experiment.db-journal", "boots", "slurm", "work", "runs", "results.csv", "report.html"};
 
-/// A run that three workers died of has no score.
+/// A run whose process died three times has no score.
 nlohmann::json failed_run(const jobs::Job&, const std::string& why) {
     RunResult result;
     result.failed = why;
@@ -130,7 +130,7 @@ class Conduct {
     jobs::Crew crew() const {
         return {{"experiment", options_.file.string(), "--out", out_.string(), "--worker"}, "run"};
     }
-    jobs::SlurmOptions slurm() const { return {crew(), out_, options_.tasks, interrupt_.flag()}; }
+    jobs::SlurmOptions slurm() const { return {crew(), out_, options_.tasks, interrupt_.flag(), failed_run}; }
     int workers() const {
         return options_.jobs > 0 ? options_.jobs
                                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -1,5 +1,6 @@
 #include "campaigns/experiment/tables.h"
 
+#include "base/plain_text.h"
 #include "base/quantile.h"
 #include "campaigns/experiment/progress.h"
 #include "campaigns/jobs/result_files.h"
@@ -103,8 +104,8 @@ std::string summary(const Findings& findings, const std::vector<Cell>& cells,
         text += fmt::format("{} runs, {:.1f} s each, {} in all{}\n", findings.results.size(),
                             wall / static_cast<double>(findings.results.size()), duration_text(wall),
                             failed == 0 ? std::string() : fmt::format("; {} failed", failed));
-    return text +
-           fmt::format("results in {}: report.html, results.csv, experiment.db\n", findings.out.string());
+    return text + fmt::format("results in {}: report.html, results.csv, experiment.db\n",
+                              plain_text(findings.out.string(), kLongestMessage));
 }
 
 }  // namespace puckloop::swarm

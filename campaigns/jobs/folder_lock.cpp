@@ -18,18 +18,23 @@ namespace puckloop::jobs {
 
 namespace fs = std::filesystem;
 
+namespace {
+constexpr const char* kMark = ".campaign";
+}
+
 FolderLock::FolderLock(const fs::path& out, const std::vector<std::string>& results) {
     std::error_code error;
     fs::create_directories(out, error);
     if (error)
         throw InputError(out.string(), "", "cannot be made: " + error.message(), "a folder for results");
-    refuse_foreign_results(out, ".campaign", results);
-    file_ = ::open((out / ".campaign").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    refuse_foreign_results(out, kMark, results);
+    file_ = ::open((out / kMark).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0) throw InputError(out.string(), "", std::strerror(errno), "a folder for results");
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
         ::close(file_);
         throw InputError(out.string(), "", "another campaign writes here", "--out with another folder");
     }
+    claim_folder(out, kMark, results);
 }
 
 FolderLock::~FolderLock() {

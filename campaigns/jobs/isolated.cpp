@@ -96,7 +96,7 @@ void run_isolated(const std::function<void()>& work) {
     if (WIFSIGNALED(status)) {
         const std::string how =
             fmt::format("puckloop itself was ended by SIG{}", sigabbrev_np(WTERMSIG(status)));
-        if (is_from_outside(WTERMSIG(status))) throw RunError(how);
+        if (is_from_outside(WTERMSIG(status))) throw Killed(how);
         throw Broke(how);
     }
     if (WEXITSTATUS(status) == kBroke) throw Broke("puckloop itself threw: " + problem);

@@ -13,9 +13,16 @@ class Broke : public RunError {
     using RunError::RunError;
 };
 
+/// A signal from outside ended it: of the user, of a machine without memory, of a limit. Tried again it may
+/// do.
+class Killed : public RunError {
+  public:
+    using RunError::RunError;
+};
+
 /// Calls `work` in a child process with no terminal, which ends with this one. What it throws comes back:
 /// InputError as InputError, RunError and the lack of memory as RunError, anything else as Broke. A signal
-/// from outside (SIGKILL, SIGTERM, ...) is a RunError, any other a Broke.
+/// from outside (SIGKILL, SIGTERM, ...) is a Killed, any other a Broke.
 void run_isolated(const std::function<void()>& work);
 
 }  // namespace puckloop::jobs

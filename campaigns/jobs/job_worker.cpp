@@ -1,6 +1,7 @@
 #include "campaigns/jobs/job_worker.h"
 
 #include "base/error.h"
+#include "campaigns/jobs/isolated.h"
 
 #include <fmt/format.h>
 
@@ -37,6 +38,8 @@ json result_of(const json& job, const std::function<json(const json&)>& carry_ou
     const int id = job.at("id");
     try {
         return {{"id", id}, {"verdict", carry_out(job)}};
+    } catch (const Killed& killed) {
+        return {{"id", id}, {"problem", killed.what()}, {"killed", true}};
     } catch (const std::runtime_error& error) {
         return {{"id", id}, {"problem", error.what()}};
     }

@@ -15,7 +15,8 @@ struct WorkerTask {
 };
 
 /// Returns when there are no more jobs. Each job in is one line of JSON, each result one line {"id",
-/// "verdict"}, or {"id", "problem"} where `carry_out` threw std::runtime_error. `id` is the job's.
+/// "verdict"}, or {"id", "problem"} where `carry_out` threw std::runtime_error, with "killed" where that was
+/// Killed (isolated.h). `id` is the job's.
 void work(const WorkerTask& task, const std::function<nlohmann::json(const nlohmann::json& job)>& carry_out);
 
 /// A worker's own folder below `parent`, unlike that of any other worker of any machine.

@@ -24,8 +24,6 @@ namespace puckloop::jobs {
 
 namespace {
 
-constexpr int kTries = 3;
-
 /// A process of its own, and a socket that is its standard input and output.
 class Worker {
   public:
@@ -156,7 +154,7 @@ class Pool {
         const nlohmann::json result = nlohmann::json::parse(line);
         const Job one = worker.busy.value();
         if (result.contains("problem"))
-            try_again(one, result.at("problem"), false);
+            try_again(one, result.at("problem"), result.value("killed", false));
         else
             take_(result.at("id"), result.at("verdict"));
         give_next(worker);
@@ -177,7 +175,7 @@ class Pool {
             waiting_.push_front(one);
         } else if (died && options_.deadly) {
             take_(one.id,
-                  options_.deadly(one, fmt::format("three workers died of it, the last so: {}", why)));
+                  options_.deadly(one, fmt::format("its process died three times, the last so: {}", why)));
         } else if (problem_.empty()) {
             problem_ = fmt::format(
                 "{} {} failed {} times: {}; the results so far are kept, the same command goes on",

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kRounds = 3;
+constexpr int kRounds = kTries;
 constexpr useconds_t kPoll = 500'000;  ///< us between questions to the controller
 constexpr int kPatience = 10;          ///< questions in a row without an answer
 
@@ -136,7 +136,7 @@ class Collector {
                 if (result.is_discarded()) continue;
                 const int id = result.at("id");
                 if (result.contains("problem"))
-                    problems[id] = result.at("problem");
+                    problems[id] = {result.at("problem"), result.value("killed", false)};
                 else if (got.insert(id).second)
                     take_(id, result.at("verdict"));
             }
@@ -144,7 +144,11 @@ class Collector {
     }
 
     std::set<int> got;
-    std::map<int, std::string> problems;
+    struct Problem {
+        std::string why;
+        bool killed = false;  ///< its process died
+    };
+    std::map<int, Problem> problems;
 
   private:
     fs::path folder_;
@@ -241,6 +245,13 @@ void run_slurm(const SlurmOptions& options, const std::vector<Job>& jobs, const 
         collector.collect();
         std::erase_if(left, [&](const Job& one) { return collector.got.contains(one.id); });
     }
+    std::erase_if(left, [&](const Job& one) {
+        const auto problem = collector.problems.find(one.id);
+        if (!options.deadly || problem == collector.problems.end() || !problem->second.killed) return false;
+        take(one.id, options.deadly(one, fmt::format("its process died three times, the last so: {}",
+                                                     problem->second.why)));
+        return true;
+    });
     if (left.empty()) {
         std::error_code ignored;
         fs::remove_all(folder_of(options), ignored);
@@ -251,7 +262,7 @@ void run_slurm(const SlurmOptions& options, const std::vector<Job>& jobs, const 
         fmt::format("{} {}: {}; the results so far are kept, the same command goes on", options.crew.noun,
                     left.front().id,
                     problem != collector.problems.end()
-                        ? problem->second
+                        ? problem->second.why
                         : fmt::format("no task brought it (logs in {})", folder_of(options).string())));
 }
 

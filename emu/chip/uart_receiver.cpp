@@ -19,6 +19,7 @@ constexpr int kVoters = 3;
 void UartReceiver::start(Cycle at) {
     listening_from_ = clock_.time_of(at);
     ask_again_ = kNoCycle;
+    newest_ = 0;
 }
 
 void UartReceiver::frame(const UartFrame& frame) {
@@ -117,6 +118,11 @@ std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, 
         character.framing_error = character.framing_error || !high(i);
     // After a framing error, a break above all, the line must rest before a start bit counts.
     listening_from_ = character.framing_error ? line_.first_high(stop_time) : stop_time;
+    // No receiver has two characters sooner after each other: the next start bit begins at the stop bit's
+    // middle.
+    const Cycle shortest = format.ticks / 2 * format.divisor + bit_cycles * static_cast<Cycle>(last_stop);
+    if (newest_ > 0) character.done = std::max(character.done, newest_ + shortest);
+    newest_ = std::max(character.done, now);
     return character;
 }
 

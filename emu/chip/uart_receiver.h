@@ -11,7 +11,8 @@
 //  1. Where no level lasts less than three sampling clocks the middle one of three samples is taken, which is
 //     their majority then.
 //  2. A character is known only once its frame was handed in, when the sender's stop bit begins: what a
-//     faster receiver samples before that instant is delivered at that instant.
+//     faster receiver samples before that instant is delivered from that instant on, one character after the
+//     other in the receiver's own time.
 //  3. A receiver that still samples after the end of all known frames waits until a next frame could no
 //     longer have begun unseen: a mismatched receiver's last character may come up to one frame of the
 //     sender late.
@@ -38,7 +39,7 @@ class UartReceiver {
         int stop_bits = 1;         ///< that are looked at
     };
     struct Character {
-        Cycle done = 0;  ///< middle of the last stop bit looked at
+        Cycle done = 0;  ///< middle of the last stop bit looked at, or later (deviation 2)
         std::uint16_t data = 0;
         bool framing_error = false;
         bool parity_error = false;
@@ -69,7 +70,7 @@ class UartReceiver {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(line_, ask_again_);
+        archive(line_, ask_again_, newest_);
         archive.bounded(listening_from_, 0, cosim::kNever);
         archive.bounded(switched_at_, kNotSwitched, cosim::kNever);
     }
@@ -83,6 +84,7 @@ class UartReceiver {
     protocols::UartLine line_;
     cosim::Time listening_from_ = 0;
     Cycle ask_again_ = kNoCycle;
+    Cycle newest_ = 0;  ///< the newest character was delivered
     static constexpr cosim::Time kNotSwitched = -1;
     cosim::Time switched_at_ = kNotSwitched;  ///< the level since then is a guess, until a frame begins
 };

@@ -28,14 +28,16 @@ struct flock whole_file() {
 
 }  // namespace
 
-ResultsFolder::ResultsFolder(const fs::path& folder, const std::vector<std::string>& files)
-    : folder_(folder), file_(folder / ".puckloop") {
+ResultsFolder::ResultsFolder(const fs::path& folder, const std::vector<std::string>& files,
+                             const std::vector<std::string>& kept)
+    : folder_(folder), file_(folder / kRunMark) {
     std::error_code failed;
     fs::create_directories(folder, failed);
     if (failed) throw InputError(folder.string(), "", "cannot be made a folder: " + failed.message());
     std::vector<std::string> written = files;
-    written.insert(written.end(), {"control.json", "events.toml"});
-    refuse_foreign_results(folder, file_.filename().string(), written);
+    for (const std::string& name : kept)  // into a folder is written, not over it
+        if (!fs::is_directory(fs::symlink_status(folder / name, failed))) written.push_back(name);
+    refuse_foreign_results(folder, kRunMark, written);
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor_ < 0)
         throw InputError(file_.string(), "", fmt::format("cannot be opened: {}", std::strerror(errno)),
@@ -47,7 +49,7 @@ ResultsFolder::ResultsFolder(const fs::path& folder, const std::vector<std::stri
         throw;
     }
     remove_listed();
-    list(files);
+    list(files, kept);
 }
 
 ResultsFolder::~ResultsFolder() {
@@ -85,16 +87,18 @@ void ResultsFolder::remove_listed() const {
     std::error_code failed;
     for (std::string name; std::getline(list, name);) {
         const fs::path file = folder_ / name;
-        // Whatever else the list may hold, only plain files of this very folder go.
+        // Whatever else the list may hold, only plain files of this very folder go; "./NAME" stays.
         if (name.empty() || fs::path(name).filename() != name) continue;
         if (fs::is_regular_file(fs::symlink_status(file, failed))) fs::remove(file, failed);
     }
 }
 
-void ResultsFolder::list(const std::vector<std::string>& files) const {
+void ResultsFolder::list(const std::vector<std::string>& files, const std::vector<std::string>& kept) const {
     std::string text;
     for (const std::string& name : files)
         text += name + '\n';
+    for (const std::string& name : kept)
+        text += "./" + name + '\n';
     // On a full disk the list is not complete, and some file of this run may outlive it.
     if (::ftruncate(descriptor_, 0) != 0) return;
     [[maybe_unused]] const auto written = ::pwrite(descriptor_, text.data(), text.size(), 0);

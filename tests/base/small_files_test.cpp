@@ -2,6 +2,7 @@
 
 #include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/new_file.h"
 #include "base/plain_text.h"
 #include "base/quantile.h"
@@ -71,6 +72,7 @@ TEST_CASE("a link in the place of a new file is not followed, a device behind on
     CHECK_FALSE(fs::exists(folder.path / "nothing"));
     fs::create_symlink("/dev/null", folder.path / "null");
     CHECK_NOTHROW(write_file(folder.path / "null", "ours"));
+    CHECK_THROWS_WITH(log::start("test", {log::Level::Off, link.string()}), Catch::Contains("is a link"));
     CHECK_NOTHROW(write_file(victim, "ours"));
     CHECK(content(victim) == "ours");
 }
@@ -83,11 +85,63 @@ TEST_CASE("a folder without our mark keeps its files, one with it is written ove
                     InputError);  // a refusal leaves none
     CHECK(content(folder.path / "report.html") == "mine");
     CHECK_NOTHROW(claim_folder(folder.path, ".mark", {"other.html"}));
-    CHECK_NOTHROW(claim_folder(folder.path, ".mark", {"report.html"}));
+    std::ofstream(folder.path / "other.html") << "ours";
+    CHECK_NOTHROW(claim_folder(folder.path, ".mark", {"other.html"}));
+    fs::remove(folder.path / "other.html");
     fs::create_symlink(folder.path / "report.html", folder.path / "other.html");
     CHECK_THROWS_WITH(claim_folder(folder.path, ".mark", {"other.html"}), Catch::Contains("is a link"));
     CHECK_NOTHROW(claim_folder(folder.path / "new" / "one", ".mark", {"report.html"}));
     CHECK_THROWS_AS(claim_folder("/dev/null/folder", ".mark", {}), InputError);
+}
+
+TEST_CASE("a mark makes puckloop's what it lists, and nothing else") {
+    const Folder folder;
+    const fs::path mark = folder.path / ".mark", report = folder.path / "report.html";
+    const auto claim = [&] { claim_folder(folder.path, ".mark", {"report.html"}); };
+    std::ofstream(report) << "mine";
+    SECTION("one that is empty, or of other names") {
+        for (const char* text : {"", "other.html\n", "report.htm\nxreport.html\n", "\n\n"}) {
+            CAPTURE(text);
+            std::ofstream(mark) << text;
+            CHECK_THROWS_WITH(claim(), Catch::Contains("report.html: is there already") &&
+                                           Catch::Contains("that does not list it"));
+            CHECK(content(mark) == text);
+        }
+    }
+    SECTION("names of earlier claims stay") {
+        std::ofstream(mark) << "report.html\n./kept\n";
+        claim_folder(folder.path, ".mark", {"other.html"});
+        CHECK_NOTHROW(claim());
+        CHECK(listed_names(content(mark)) == std::set<std::string>{"kept", "other.html", "report.html"});
+    }
+    SECTION("a second name of the mark's file, or of a result's") {
+        const fs::path victim = folder.path / "victim.txt";
+        std::ofstream(victim) << "report.html\n";
+        fs::create_hard_link(victim, mark);
+        CHECK_THROWS_WITH(claim(), Catch::Contains(".mark: has another name (a hard link)"));
+        CHECK(content(victim) == "report.html\n");
+        fs::remove(mark);
+        std::ofstream(mark) << "report.html\n";
+        fs::remove(report);
+        fs::create_hard_link(victim, report);
+        CHECK_THROWS_WITH(claim(), Catch::Contains("report.html: has another name (a hard link)"));
+    }
+    SECTION("what is no plain file is no mark") {
+        fs::create_directories(mark);
+        CHECK_THROWS_WITH(claim(), Catch::Contains(".mark: cannot be opened"));
+        fs::remove(mark);
+        std::ofstream(folder.path / "list") << "report.html\n";
+        fs::create_symlink("list", mark);
+        CHECK_THROWS_WITH(claim(), Catch::Contains(".mark: cannot be opened"));
+    }
+    SECTION("a folder is emptied only if it holds nothing else") {
+        std::ofstream(mark) << "report.html\n./kept\n";
+        CHECK(holds_only_results(folder.path, ".mark"));
+        fs::create_directories(folder.path / "kept");
+        CHECK(holds_only_results(folder.path, ".mark"));
+        std::ofstream(folder.path / "notes.txt") << "mine";
+        CHECK_FALSE(holds_only_results(folder.path, ".mark"));
+    }
 }
 
 TEST_CASE("a user's text is shown on one line, without what a terminal obeys, and shortened") {

@@ -231,6 +231,33 @@ TEST_CASE("a case in which the emulator itself crashes is an outcome of its own,
           7);
 }
 
+TEST_CASE(
+    "runs that are killed from outside are tried again, the nominal one too, and one at last fails alone") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    // The nominal run is the first child of the campaign itself; once is an accident.
+    const auto campaign = bench.start(campaign_words(bench, file, "killed", {"--jobs", "1"}));
+    std::vector<pid_t> nominal;
+    while (nominal.empty() && runs(campaign->id()))
+        nominal = campaign->children();
+    REQUIRE_FALSE(nominal.empty());
+    ::kill(nominal.front(), SIGKILL);
+    // Then runs of cases, until one was killed each time.
+    REQUIRE(wait_for_results(*campaign, bench.out("killed"), 1));
+    while (failures_in(bench.out("killed")) == 0 && runs(campaign->id()))
+        for (const pid_t worker : campaign->children())
+            for (const pid_t run : children_of(worker))
+                ::kill(run, SIGKILL);
+    const Ended ended = campaign->wait();
+    INFO(ended.err);
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.err,
+               Contains("nominal run, seed 1: puckloop itself was ended by SIGKILL: it is run again"));
+    CHECK_THAT(table_of(bench, "killed"),
+               Contains(",puckloop failed,") && Contains("its process died three times"));
+    CHECK(rows_of(table_of(bench, "killed")) >= 10);
+}
+
 TEST_CASE("a campaign's table is the same with more workers, after a kill, lost workers and a full disk") {
     const Workbench bench;
     const auto file = small_campaign(bench);

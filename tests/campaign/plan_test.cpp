@@ -64,13 +64,29 @@ TEST_CASE("a byte of the Linux board's protocol is named by record and field") {
     CHECK(names("robot0.linux", {1, 6, 10}) ==
           Names{"actuators left high (byte 1)", "actuators ring_leds (byte 6)", "actuators reset (byte 10)"});
     // The last byte by itself, as the project's own program writes it.
-    program = records(1.05, 2, 11);
-    program.times.push_back(1.16);
-    program.values.emplace_back("00");
-    program.frame_s.push_back(kByte);
-    CHECK(names("robot0.linux", {2}) == Names{"actuators right low (byte 2)"});
+    program = {};
+    for (const double begin : {1.05, 1.15, 1.25}) {
+        const Sender first = records(begin, 1, 11), last = records(begin + 0.01, 1, 1);
+        for (const Sender* part : {&first, &last}) {
+            program.times.insert(program.times.end(), part->times.begin(), part->times.end());
+            program.values.insert(program.values.end(), part->values.begin(), part->values.end());
+            program.frame_s.insert(program.frame_s.end(), part->frame_s.begin(), part->frame_s.end());
+        }
+    }
+    CHECK(names("robot0.linux", {2, 10, 11, 12}) == Names{"actuators right low (byte 2)",
+                                                          "actuators reset (byte 10)",
+                                                          "actuators padding (byte 11)", "byte 12"});
+    const json command{{"link", "robot0.uart"}, {"from", "robot0.linux"}};
+    CHECK(positions_of(sweep, command, nominal)[2].begin == "1.160000 s");
+    sweep.bytes.reset();
+    CHECK(positions_of(sweep, command, nominal).size() == 12);
     sweep.records = {2};
-    CHECK(names("robot0.linux", {0}) == Names{"actuators padding (byte 0)"});
+    CHECK(positions_of(sweep, command, nominal)[0].begin == "1.250000 s");
+    sweep.after = 1.155;  // between the first command's bytes and its last one
+    sweep.records = {0};
+    CHECK(positions_of(sweep, command, nominal)[0].begin == "1.250000 s");
+    sweep.records = {1};
+    CHECK_FALSE(positions_of(sweep, command, nominal)[0].missing.empty());
     // Another protocol.
     sweep.records = {1};
     nominal.senders["robot0.uart from robot0.pic"] = records(1, 3, 40);

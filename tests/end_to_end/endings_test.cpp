@@ -210,7 +210,7 @@ TEST_CASE("a snapshot that finds no room is not reported") {
 TEST_CASE("an export that cannot be written hides nothing of the run") {
     const Workbench bench;
     std::filesystem::create_directories(bench.out("o") / "trace.vcd");
-    std::ofstream(bench.out("o") / ".puckloop").close();  // a folder of ours
+    std::ofstream(bench.out("o") / ".puckloop") << "trace.vcd\n";  // a folder of ours
     const Ended ended =
         bench.run("o", {kHello, "--duration", "0.3", "--in-process", "--trace-format", "vcd"});
     check_one_line(ended, 1, {"trace.vcd: cannot be written"});

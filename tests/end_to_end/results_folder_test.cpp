@@ -49,6 +49,14 @@ TEST_CASE("a second run into the same folder is refused and names the first") {
     }
 }
 
+TEST_CASE("a folder's name is shown without what a terminal obeys") {
+    const Workbench bench;
+    const Ended ended = bench.run("o\x1b[31m", {kHello, "--duration", "0.1"});
+    CHECK(ended.status == 0);
+    CHECK(ended.out.find('\x1b') == std::string::npos);
+    CHECK_THAT(ended.out, Catch::Contains("o\\x1b[31m"));
+}
+
 TEST_CASE("files of an earlier, larger run go, a user's own stay") {
     const Workbench bench;
     REQUIRE(bench.run("o", {kPair, "--duration", "0.2"}).status == 0);
@@ -72,9 +80,57 @@ TEST_CASE("a damaged list of files removes nothing outside of the folder") {
     const Workbench bench;
     REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
     bench.file("beside.txt", "mine\n");
-    bench.file("o/.puckloop", "../beside.txt\n/etc/hostname\n.\n..\n\n" + std::string(5000, 'x'));
+    const std::string list = text_of(bench.out("o") / ".puckloop");
+    bench.file("o/.puckloop",
+               "../beside.txt\n/etc/hostname\n.\n..\n\n" + std::string(5000, 'x') + "\n" + list);
     CHECK(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
     CHECK(text_of(bench.folder() / "beside.txt") == "mine\n");
+}
+
+TEST_CASE("a mark is looked into: what it does not list is a user's") {
+    const Workbench bench;
+    const fs::path mark = bench.out("o") / ".puckloop";
+    const auto refused = [&](const char* name, const char* why) {
+        check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {name, why});
+    };
+    SECTION("an empty mark") {
+        fs::create_directories(bench.out("o"));
+        bench.file("o/.puckloop", "");
+        bench.file("o/trace.csv", "mine\n");
+        refused("trace.csv", "that does not list it");
+        CHECK(text_of(bench.out("o") / "trace.csv") == "mine\n");
+    }
+    SECTION("another run's names") {
+        REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+        bench.file("o/leader.pic.log", "mine\n");
+        check_one_line(bench.run("o", {kPair, "--duration", "0.1"}), 2,
+                       {"leader.pic.log", "that does not list it"});
+        CHECK(text_of(bench.out("o") / "leader.pic.log") == "mine\n");
+        CHECK(fs::exists(bench.out("o") / "robot0.pic.log"));  // the run before's are still there
+    }
+    SECTION("a hard link") {
+        bench.file("victim.txt", "mine\n");
+        fs::create_directories(bench.out("o"));
+        fs::create_hard_link(bench.folder() / "victim.txt", mark);
+        refused(".puckloop", "hard link");
+        CHECK(text_of(bench.folder() / "victim.txt") == "mine\n");
+        fs::remove(mark);
+        REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+        fs::create_hard_link(bench.folder() / "victim.txt", bench.out("o") / "events.toml");
+        refused("events.toml", "hard link");
+        CHECK(text_of(bench.folder() / "victim.txt") == "mine\n");
+    }
+    SECTION("a link in the place of a program's folder") {
+        fs::create_directories(bench.folder() / "elsewhere");
+        fs::create_directories(bench.out("o"));
+        fs::create_directory_symlink(bench.folder() / "elsewhere", bench.out("o") / "work");
+        std::string scenario = text_of(kHello) + "\nfolder = \"work\"\n";
+        const std::string place = "../firmware";
+        scenario.replace(scenario.find(place), place.size(), PUCKLOOP_SOURCE "/firmware");
+        bench.file("s.toml", scenario);
+        check_one_line(bench.run("o", {(bench.folder() / "s.toml").string(), "--duration", "0.1"}), 2,
+                       {"work", "is a link"});
+    }
 }
 
 TEST_CASE("a lock that cannot be made is one line and leaves the results") {

@@ -137,6 +137,43 @@ double find_edge(const ChipKind& kind, const Format& format, double wait, double
 
 }  // namespace
 
+TEST_CASE("uart: a much slower sender's garbage comes at the receiver's pace, so that a driver keeps up") {
+    // Five edges in a word: more characters than a receiver holds, known at once when its frame is handed in.
+    RandomStream random(Catch::rngSeed(), "slow sender");
+    for (const ChipKind& kind : chip_kinds()) {
+        const Format format = kind.formats.front();
+        const auto chip = kind.make(0);
+        chip->set(format, 8);
+        const Time own = std::llround(chip->bit_seconds() * kPicoseconds);
+        const Time bit = own * 12 + static_cast<Time>(random.below(static_cast<std::uint64_t>(own)));
+        std::vector<UartFrame> line;
+        Time at = 1'000'000'000;
+        for (int i = 0; i < 6; ++i, at += bit * (format.bits_before_stop() + format.stop_bits))
+            line.push_back(frame_of(format, i % 2 == 0 ? 0x55 : 0x2A, at, bit));
+        // A driver that looks four times in a character.
+        std::vector<Character> heard;
+        Time now = 0;
+        const auto go = [&](Time until) {
+            for (; now < until; now += own * 5 / 2) {
+                chip->run_to(now);
+                const auto some = chip->take();
+                CHECK(some.size() <= 1);
+                heard.insert(heard.end(), some.begin(), some.end());
+            }
+        };
+        for (const UartFrame& frame : line) {
+            const Time known = frame.start + bit * format.bits_before_stop();
+            go(known);
+            chip->deliver(frame, std::max(now, known));
+        }
+        go(now + 80 * bit);
+        INFO(kind.name);
+        const auto expected = listen(line, format, kind.ticks, [&](std::int64_t n) { return chip->tick(n); });
+        CHECK(expected.size() > 3 * line.size());
+        CHECK(heard == expected);
+    }
+}
+
 TEST_CASE("uart: a sweep of the sender's rate, each character as the data sheet's sampling gives it") {
     RandomStream random(17, "uart baud sweep");
     Table table("uart_baud_sweep.csv", "receiver,format,sender's mismatch %,characters,wrong");

@@ -14,11 +14,11 @@ using namespace puckloop::tests;
 using Catch::Contains;
 
 namespace {
-std::string run_kit(const std::string& what, const std::function<void(Bench&)>& prepare = {}) {
+std::string run_alike(const linuxboard::LinuxSpec& spec, const std::function<void(Bench&)>& prepare) {
     std::string first;
     // Twice, with grants cut differently: the same to the byte.
     for (const Time slice : {70 * kMicrosecond, 17 * kMicrosecond}) {
-        Bench bench(spec_for("kit", {what}), slice);
+        Bench bench(spec, slice);
         if (prepare) prepare(bench);
         bench.run(kSecond);
         INFO(bench.log());
@@ -29,6 +29,10 @@ std::string run_kit(const std::string& what, const std::function<void(Bench&)>& 
         CHECK(bench.log() + bench.trace() == first);
     }
     return first;
+}
+
+std::string run_kit(const std::string& what, const std::function<void(Bench&)>& prepare = {}) {
+    return run_alike(spec_for("kit", {what}), prepare);
 }
 }  // namespace
 
@@ -49,6 +53,15 @@ TEST_CASE("a pipe between threads wakes the reader when it is written") {
 TEST_CASE("barriers, read-write locks, once and timed locks") {
     CHECK_THAT(run_kit("locks"),
                Contains("once at 5\nbarrier at 8\njoined at 14\nerrorcheck 0 1\ntimedlock 1 at 18\n"));
+}
+
+TEST_CASE("asynchronous reads and writes wait in simulated time") {
+    // The pipe's writer writes 30 ms after the limit of 10 ms; what is sent to the port is answered at once.
+    const std::string text = run_alike(spec_for("aio"), [](Bench& bench) {
+        bench.on_byte = [&bench](Time time, std::uint8_t) { bench.send(time + 20 * kMillisecond, "x"); };
+    });
+    CHECK_THAT(text, Contains("limit at 10, cancel 1 1\npipe 3 abc at 40\nport 1 1 x, signal 7, at 60\n"
+                              "file firstsecond, bad 1 -1\n"));
 }
 
 TEST_CASE("a device opened as a stream") {

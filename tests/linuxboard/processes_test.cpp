@@ -1,5 +1,6 @@
 // Programs behind wrappers, and programs of several processes, in simulated time.
 
+#include "base/text_file.h"
 #include "cosim/core/cores.h"
 #include "tests/linuxboard/bench.h"
 #include "tests/scratch.h"
@@ -9,6 +10,7 @@
 
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,6 +25,7 @@ using namespace puckloop::cosim;
 using namespace puckloop::tests;
 using Catch::Contains;
 using Catch::EndsWith;
+using Catch::Matches;
 using Catch::StartsWith;
 
 namespace {
@@ -168,6 +171,13 @@ TEST_CASE("signals among processes come at simulated times") {
     check_same(family("signals"), ran);
 }
 
+TEST_CASE("a handler is given the sender of its signal, and how a child ended") {
+    const Ran ran = run(family("origins"));
+    CHECK(ran.log == "asked 1 by child 1, user 1, code 1\nended 1: child 1, user 1, code 1, status 5\n"
+                     "raised: self 1\nkilled: code 1, status 15\n");
+    check_same(family("origins"), ran);
+}
+
 TEST_CASE("system and popen run their shells in simulated time") {
     const Ran ran = run(family("shells"));
     CHECK_THAT(ran.log, Contains("system 4\n") && Contains(": one\n") && Contains(": two\npclose 0\n") &&
@@ -212,6 +222,60 @@ TEST_CASE("a program that cannot be conducted is refused where it is called, wit
     CHECK_THAT(child.log, Contains("is statically linked") && Contains("status 126\n"));
     CHECK(child.sent == std::string("\0\1\2\3\4", 5));
     CHECK(std::count(child.log.begin(), child.log.end(), 'k') > 0);
+}
+
+TEST_CASE(
+    "every kind of program that the library cannot be in is refused, at the start and where it is called") {
+    const std::string file = scratch_path("puckloop-odd-program").string();
+    struct Removed {
+        std::string file;
+        ~Removed() { std::filesystem::remove(file); }
+    } const removed{file};
+    std::string image = read_whole_file(program("clocks")).value(), why;
+    SECTION("of another processor") {
+        image[18] = 40;  // e_machine: ARM
+        why = "for another processor";
+    }
+    SECTION("of 32 bits") {
+        image[4] = 1;
+        why = "for another processor";
+    }
+    SECTION("of another C library") {
+        const std::string loader = "/lib64/ld-linux-x86-64.so.2";
+        const auto place = image.find(loader);
+        if (place == std::string::npos) {
+            WARN("not on this processor: skipped");
+            return;
+        }
+        std::string other = "/lib/ld-musl-x86_64.so.1";
+        other.resize(loader.size());
+        image.replace(place, loader.size(), other);
+        why = "another C library than glibc";
+    }
+    SECTION("of another group") {
+        why = "setgid";
+    }
+    std::ofstream(file, std::ios::binary) << image;
+    std::filesystem::permissions(file, std::filesystem::perms(0755));
+    if (why == "setgid") {
+        if (::chown(file.c_str(), geteuid(), getegid() + 1) != 0) {
+            WARN("only root can give a file to another group: skipped");
+            return;
+        }
+        REQUIRE(::chmod(file.c_str(), 02755) == 0);
+    }
+    CAPTURE(why);
+    linuxboard::LinuxSpec spec = spec_for("clocks");
+    spec.program = file;
+    CHECK_THROWS_WITH(linuxboard::LinuxNode(spec), Contains(file) && Contains(why));
+    const Ran child = run(shell(file + "; echo status $?; exec " + program("clocks")));
+    CHECK_THAT(child.log, Contains(why) && Contains("status 126\n"));
+    const std::string script = file + ".sh";
+    std::ofstream(script) << "#!" << file << "\n";
+    std::filesystem::permissions(script, std::filesystem::perms(0755));
+    const Removed script_removed{script};
+    spec.program = script;
+    CHECK_THROWS_WITH(linuxboard::LinuxNode(spec), Contains(file) && Contains(why));
 }
 
 TEST_CASE("the signal at the end goes to the process that handles it, and the rest takes its last words") {
@@ -317,6 +381,25 @@ TEST_CASE("semaphores shared between processes wait in simulated time") {
     REQUIRE(ran.stop);
     CHECK(ran.log == "[1, 4, 9]\n");
     CHECK(ran.stop->success);
+}
+
+TEST_CASE("barriers, conditions and semaphores in shared memory wait in simulated time") {
+    const auto lines = [](const char* what) {
+        const auto spec = spec_for("sharing", {what, std::to_string(getpid())});
+        const Ran ran = run(spec);
+        INFO(ran.log);
+        REQUIRE(ran.stop);
+        CHECK(ran.stop->success);
+        CHECK(ran.warnings.empty());
+        check_same(spec, ran);
+        return ran.log;
+    };
+    // Who waits for another process looks every millisecond.
+    CHECK_THAT(lines("barrier"),
+               Matches("round 0 at 4[012]\nround 1 at 8[0-4]\nround 2 at 12[0-6]\nserial 3\n"));
+    CHECK_THAT(lines("condition"),
+               Matches("value 7 after 1 wait, at 5[01]\ntoo late at 8[01]\nsemaphore at 8[012]\n"));
+    CHECK_THAT(lines("file"), Matches("met at 3[012]\n"));
 }
 
 TEST_CASE("named pipes wait in simulated time") {

@@ -1,6 +1,7 @@
 // puckloop faults: campaigns of injected faults (docs/faults.md).
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "campaigns/engine/campaign.h"
 #include "campaigns/engine/html.h"
 #include "campaigns/engine/table.h"
@@ -41,7 +42,7 @@ int replay(const FaultsOptions& options) {
                                      [&](const auto& result) { return result.one.id == options.id; });
     fmt::print("{}", faults::case_text(results, options.id));
     fmt::print("replayed: {}, trace {}\nresults in {}\n", faults::name_of(now.outcome), now.trace_sha256,
-               out.string());
+               plain_text(out.string(), kLongestMessage));
     if (now.outcome == before->verdict.outcome && now.trace_sha256 == before->verdict.trace_sha256) return 0;
     fmt::print(stderr, "puckloop: case {} is not what it was in the campaign\n", options.id);
     return 1;
@@ -126,7 +127,7 @@ void declare_faults(Command& app, int& status) {
         const faults::Results results = faults::read_results(options->folder);
         faults::write_table(results);
         faults::write_html(results);
-        fmt::print("{}\n", (results.out / "report.html").string());
+        fmt::print("{}\n", plain_text((results.out / "report.html").string(), kLongestMessage));
     });
     declare_worker(*command, options);
 }

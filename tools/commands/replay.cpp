@@ -140,7 +140,7 @@ int run_replay(ReplayCommandOptions& options) {
     const NodeDescription& description = find_node(setup, options.node).what;
     if (std::error_code none; std::filesystem::equivalent(setup.out, options.folder, none))
         throw InputError(setup.out.string(), "--out", "is the recorded run's own folder", "another folder");
-    const ResultsFolder results(setup.out, result_files(setup));
+    const ResultsFolder results(setup.out, result_files(setup), kept_results(setup));
     make_work_folders(setup);
     const auto node = make_node(description);
     if (options.list_registers) {

@@ -35,6 +35,8 @@ namespace puckloop::tools {
 
 namespace {
 
+constexpr std::size_t kLongestSummary = 1 << 20;  ///< bytes
+
 constexpr double kShortestStall = 1e-3;
 constexpr double kShortestRun = 1e-9, kLongestDuration = 720 * 3600.0;  // seconds
 
@@ -157,7 +159,9 @@ int run_scenario_file(RunOptions& options) {
     if (options.json)
         fmt::print(said, "{}\n", (setup.out / "report.json").string());
     else
-        fmt::print(said, "{}{}\n", summary(setup, outcome), snapshots_summary(request, outcome));
+        fmt::print(
+            said, "{}\n",
+            plain_lines(summary(setup, outcome) + snapshots_summary(request, outcome), kLongestSummary));
     const int status = status_of(outcome, *interrupt.flag());
     if (status != 0) fmt::print(stderr, "puckloop: {}\n", plain_lines(outcome.text, kLongestMessage));
     if (failed) std::rethrow_exception(failed);

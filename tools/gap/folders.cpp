@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <regex>
@@ -49,7 +50,11 @@ void prepare_folder(const fs::path& folder) {
     remove_rests(folder);
     const fs::path trial = folder / fmt::format("puckloop.{}.part", ::getpid());
     errno = 0;
-    const bool written = static_cast<bool>(std::ofstream(trial) << "trial" << std::flush);
+    bool written = false;
+    if (std::FILE* const file = new_file(trial); file != nullptr) {
+        written = std::fputs("trial", file) >= 0;
+        written = std::fclose(file) == 0 && written;
+    }
     const int reason = errno;
     fs::remove(trial, failed);
     if (!written)

@@ -3,6 +3,7 @@
 #include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/plain_text.h"
 #include "emu/image/image.h"
 #include "gap/begin/expected_time.h"
 #include "gap/data/columns.h"
@@ -166,7 +167,7 @@ void analyse_folder(const FitRequest& request) {
     write_beside(checks, gap::report::predictive_svg(verdict));
     for (const auto& file : {overlay, json, page, checks})
         put_in_place(file);
-    fmt::print("report in {}\n", page.string());
+    fmt::print("report in {}\n", plain_text(page.string(), kLongestMessage));
 }
 
 }  // namespace

@@ -73,6 +73,17 @@ void TtyPort::take(const protocols::ReceivedCharacter& character) {
     } else if (character.parity_error) {
         ++counters_.parity;
     }
+    discipline(character);
+}
+
+void TtyPort::insert(char byte, Time now) {
+    last_input_ = now;
+    protocols::ReceivedCharacter character;
+    character.data = static_cast<std::uint8_t>(byte);
+    discipline(character);
+}
+
+void TtyPort::discipline(const protocols::ReceivedCharacter& character) {
     const LineDiscipline::Effect effect = discipline_.receive(character, settings_);
     if (effect.stop_output) stopped_ = true;
     if (effect.start_output) start_output(last_input_);

@@ -93,6 +93,8 @@ class TtyPort {
     void distort_rate(double factor) { rate_ppm_ = ppm_ + (1e6 + ppm_) * (factor - 1.0); }
     void flush_input() { discipline_.discard(); }
     void flush_output();
+    /// TIOCSTI: as if the line had brought it, but for the driver's counters.
+    void insert(char byte, cosim::Time now);
     void stop_output() { stopped_ = true; }
     void start_output(cosim::Time now);
 
@@ -107,6 +109,7 @@ class TtyPort {
     cosim::Time next_tick(cosim::Time time) const;
     void arrive(const std::vector<protocols::ReceivedCharacter>& characters, cosim::Time known);
     void take(const protocols::ReceivedCharacter& character);
+    void discipline(const protocols::ReceivedCharacter& character);
     bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, rate_ppm_) != 0; }
 
     struct Arrival {

@@ -145,6 +145,7 @@ int VideoDevice::queue_buffer(int handle, std::string& data) {
     Buffer& own = buffers_[buffer.index];
     if (own.state != Buffer::State::Dequeued) return EINVAL;
     own.state = Buffer::State::Queued;
+    none_queued_yet_ = false;
     queued_.push_back(buffer.index);
     describe(buffer.index, buffer);
     put_struct(data, buffer);
@@ -191,6 +192,7 @@ void VideoDevice::start(Time now) {
 
 void VideoDevice::stop() {
     streaming_ = false;
+    none_queued_yet_ = true;
     filling_.reset();
     queued_.clear();
     done_.clear();
@@ -255,6 +257,8 @@ std::optional<VideoDevice::ReadResult> VideoDevice::read(int handle, std::uint32
 std::int16_t VideoDevice::events(int handle, bool wants_input, Time now) {
     if (owner_ < 0 && wants_input) begin_reading(handle, now);
     if (!streaming_ || busy_for(handle)) return POLLERR;
+    // As videobuf2, for programs of the time before it: nothing will come.
+    if (none_queued_yet_ && !reading_ && wants_input) return POLLERR;
     return done_.empty() ? 0 : POLLIN | POLLRDNORM;
 }
 

@@ -133,6 +133,7 @@ class VideoDevice {
 
     int owner_ = -1;  // open file that has the buffers
     bool reading_ = false;
+    bool none_queued_yet_ = true;  ///< since there are buffers, or since the last stream's end
     std::uint32_t read_from_ = 0;  // of the frame that a read() has begun with
     std::vector<Buffer> buffers_;
     std::deque<std::size_t> queued_, done_;

@@ -76,11 +76,27 @@ const VideoFormat* find_format(std::uint32_t fourcc) {
 }
 
 FrameSize nearest_size(std::uint32_t width, std::uint32_t height) {
-    const auto off = [width, height](const FrameSize& size) {
-        return std::abs(std::int64_t{size.width} - width) + std::abs(std::int64_t{size.height} - height);
+    const auto off = [width = width & 0xFFFF, height = height & 0xFFFF](const FrameSize& size) {
+        const std::uint32_t common = std::min(size.width, width) * std::min(size.height, height);
+        return size.width * size.height + width * height - 2 * common;
     };
     return *std::min_element(kSizes.begin(), kSizes.end(),
                              [&](const FrameSize& a, const FrameSize& b) { return off(a) < off(b); });
+}
+
+std::uint32_t nearest_rate(std::uint32_t numerator, std::uint32_t denominator) {
+    constexpr std::uint64_t kSecond = 10'000'000;  // uvcvideo counts 100 ns
+    const std::uint64_t wanted = denominator == 0 ? ~std::uint32_t{0} : numerator * kSecond / denominator;
+    std::uint32_t nearest = kFrameRates[0];
+    std::uint64_t least = ~std::uint64_t{0};
+    for (const std::uint32_t rate : kFrameRates) {
+        const std::uint64_t interval = kSecond / rate;
+        const std::uint64_t off = std::max(wanted, interval) - std::min(wanted, interval);
+        if (off > least) break;
+        least = off;
+        nearest = rate;
+    }
+    return nearest;
 }
 
 void convert(const VideoFormat& format, std::span<const std::uint8_t> rgb, std::span<std::uint8_t> out) {

@@ -26,8 +26,11 @@ std::span<const VideoFormat> video_formats();
 /// Largest first.
 std::span<const FrameSize> frame_sizes();
 const VideoFormat* find_format(std::uint32_t fourcc);
-/// The size that differs least, as v4l2_find_nearest_size() of the kernel finds it.
+/// The size that differs least, as uvcvideo finds it: by the area that two pictures do not share.
 FrameSize nearest_size(std::uint32_t width, std::uint32_t height);
+/// The rate whose interval is nearest to so many seconds, as uvcvideo finds it; of two the longer interval.
+/// Without a denominator the longest.
+std::uint32_t nearest_rate(std::uint32_t numerator, std::uint32_t denominator);
 
 /// `rgb` (3 bytes a pixel) as `format`, whose frame `out` has room for. YUV is full range (JPEG), the two
 /// pixels of a pair share the mean of their colour.

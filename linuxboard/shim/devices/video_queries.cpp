@@ -227,14 +227,8 @@ int VideoDevice::set_parameters(std::string& data, bool set) {
     if (!is_capture(wanted.type)) return EINVAL;
     if (set) {
         if (streaming_) return EBUSY;
-        const v4l2_fract& time = wanted.parm.capture.timeperframe;
-        rate_ = kFrameRates[0];
-        if (time.numerator > 0 && time.denominator > 0) {
-            // The longest interval that is not longer than asked for: the kernel's drivers round so.
-            rate_ = kFrameRates[0];
-            for (const std::uint32_t rate : kFrameRates)
-                if (std::uint64_t{rate} * time.numerator >= time.denominator) rate_ = rate;
-        }
+        rate_ = nearest_rate(wanted.parm.capture.timeperframe.numerator,
+                             wanted.parm.capture.timeperframe.denominator);
     }
     v4l2_streamparm found{};
     found.type = wanted.type;

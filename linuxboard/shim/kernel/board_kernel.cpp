@@ -175,7 +175,8 @@ void BoardKernel::call(const Request& request, std::string_view data) {
     }
     if (!attempt(request.thread, waiting, now)) {
         waiting_.insert_or_assign(request.thread, std::move(waiting));
-    } else if (request.op == Op::Ioctl || request.op == Op::Close || is_socket_call(request.op)) {
+    } else if (request.op == Op::Ioctl || request.op == Op::Close || request.op == Op::Insert ||
+               is_socket_call(request.op)) {
         attempt_all(now);  // a stream's end ends the calls that wait for its frames
     }
 }
@@ -227,6 +228,9 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
             waiting.since = now;
         }
         return now >= waiting.since + request.b * cosim::kMicrosecond ? done(0) : false;
+    case Op::Insert:
+        tty_.insert(static_cast<char>(request.a), now);
+        return done(0);
     case Op::InputQueue:
         return done(static_cast<std::int64_t>(tty_.input_queue()));
     case Op::OutputQueue:

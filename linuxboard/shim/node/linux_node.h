@@ -163,7 +163,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void fork(Client& client);
     void hear_child(Client& parent);
     void hello(Client& client);
-    void send_signal(std::uint32_t slot, int signal, cosim::Time now);
+    void send_signal(std::uint32_t slot, int signal, cosim::Time now, const wire::SignalOrigin& origin = {});
     void signal_all(int signal, cosim::Time now);
     void changed(const Client* by, cosim::Time now);
     void client_ended(Client& client, cosim::Time now);

@@ -108,7 +108,8 @@ bool LinuxNode::handle_family(Client& client) {
         return true;
     case Op::Kill:
         // The sender goes on for a moment: what it sends together arrives together, as on one processor.
-        send_signal(request.a, static_cast<int>(request.b), request.now + spec_.charges.thread);
+        send_signal(request.a, static_cast<int>(request.b), request.now + spec_.charges.thread,
+                    {entry(client.slot).number, 0, 0});
         finish(client, 0);
         return true;
     case Op::Reap:
@@ -151,6 +152,8 @@ void LinuxNode::fork(Client& client) {
     made.call_name[0] = '\0';
     made.computed = made.children_computed = 0;
     made.faults = 0;
+    for (wire::SignalOrigin& origin : made.origins)
+        origin = {};
     wire::Channel& channel = *new (wire::channel_of(launcher_->page(), slot)) wire::Channel;
     auto child = std::make_unique<Client>();
     child->slot = slot;
@@ -191,7 +194,7 @@ void LinuxNode::hear_child(Client& parent) {
     client_ended(*child, now);
 }
 
-void LinuxNode::send_signal(std::uint32_t slot, int signal, Time now) {
+void LinuxNode::send_signal(std::uint32_t slot, int signal, Time now, const wire::SignalOrigin& origin) {
     Client* client = client_at(slot);
     if (client == nullptr || signal <= 0 || signal >= NSIG) return;
     if (signal == SIGKILL) {
@@ -199,6 +202,7 @@ void LinuxNode::send_signal(std::uint32_t slot, int signal, Time now) {
         client_ended(*client, now);
         return;
     }
+    entry(slot).origins[signal] = origin;
     client->signals |= std::uint64_t{1} << signal;
     client->signals_at = std::min(client->signals_at, now);
 }
@@ -246,7 +250,7 @@ void LinuxNode::client_ended(Client& client, Time now) {
     if (ended.parent == wire::kNoParent) {
         ended.state = ProcessEntry::Free;
     } else {
-        send_signal(static_cast<std::uint32_t>(ended.parent), SIGCHLD, now);
+        send_signal(static_cast<std::uint32_t>(ended.parent), SIGCHLD, now, {ended.number, 1, ended.status});
     }
     if (slot == 0 && !clients_.empty()) first_ended(now);
     changed(nullptr, now);

@@ -8,6 +8,7 @@
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/signal_origins.h"
 
 #include <signal.h>
 #include <sys/syscall.h>
@@ -134,7 +135,11 @@ SHIM_EXPORT int sigaction(int number, const struct sigaction* action, struct sig
     struct sigaction next {};
     if (action != nullptr && !get_from_program(next, action)) return -1;
     sigdelset(&next.sa_mask, SIGSYS);
-    if (index < 0) return REAL(sigaction)(number, action != nullptr ? &next : nullptr, before);
+    if (index < 0) {
+        struct sigaction old {};
+        if (set_informed_action(number, action != nullptr ? &next : nullptr, &old) != 0) return -1;
+        return before == nullptr || put_to_program(before, old) ? 0 : -1;
+    }
     if (before != nullptr && !put_to_program(before, wanted[index])) return -1;
     if (action == nullptr) return 0;
     wanted[index] = next;

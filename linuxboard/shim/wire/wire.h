@@ -15,7 +15,7 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 7;
+inline constexpr std::uint32_t kVersion = 8;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -52,6 +52,7 @@ enum class Op : std::uint32_t {
     Ioctl,        ///< handle (camera), a = request, data: its struct, and what that points to; the same back
     Map,  ///< handle (camera), a, b = offset and length to be mapped; result: where in the shared memory
     VideoRead,  ///< handle (camera), a = most bytes; data: where they are in the shared memory (uint64)
+    Insert,     ///< handle, a = a byte that is as if it had come in (TIOCSTI)
     // Sockets; addresses are SocketAddress
     Socket,       ///< a = 1: a stream, 0: datagrams; result: handle
     Bind,         ///< handle, data: address
@@ -227,6 +228,14 @@ inline constexpr int kRefusedStatus = 126;
 
 /// One process of the program, by its slot. Everything is written by whoever runs: the process itself or the
 /// node.
+/// Of the newest signal of its number that the node sent to a process.
+struct SignalOrigin {
+    std::int32_t process = 0;  ///< who sent it, or the child that ended; 0: nobody of the program
+    std::int32_t ended = 0;    ///< 1: a child's end, with
+    std::int32_t status = 0;   ///< its status, as waitpid() gives it
+};
+inline constexpr std::uint32_t kSignals = 65;  ///< their numbers are below
+
 struct ProcessEntry {
     enum State : std::uint32_t { Free, Alive, Ended };
     std::uint32_t state = Free;
@@ -248,6 +257,7 @@ struct ProcessEntry {
     std::uint64_t fault_place = 0;    ///< of the instruction
     std::uint64_t fault_address = 0;  ///< that it asked for
     std::atomic<std::uint64_t> faults{0};
+    SignalOrigin origins[kSignals] = {};
 };
 
 /// What the node sets before the program starts, and the processes, so that the node can find where one hangs

@@ -123,6 +123,7 @@ static void serial(void) {
     const int fd = open_serial(1, 0);
     struct stat status;
     struct timespec before, after;
+    int number = 0;
     any_terminal(fd);
     GIVES(fstat(fd, &status), 0);
     GIVES(status.st_rdev, makedev(4, 64));
@@ -137,6 +138,12 @@ static void serial(void) {
     FAILS(ioctl(fd, TIOCMSET, bad()), EFAULT);
     FAILS(ioctl(fd, TIOCGICOUNT, bad()), EFAULT);
     FAILS(ioctl(fd, TIOCGSERIAL, bad()), EFAULT);
+    FAILS(ioctl(fd, TIOCSTI, bad()), EFAULT);
+    char inserted = 'x';
+    GIVES(ioctl(fd, TIOCSTI, &inserted), 0);
+    GIVES(ioctl(fd, FIONREAD, &number), 0);
+    GIVES(number, 1);
+    GIVES(read(fd, &inserted, 1), 1);
     FAILS(ioctl(fd, I2C_SLAVE, 3), ENOTTY);
     FAILS(sendfile(fd, fd, NULL, 10), EINVAL);
     GIVES(fchmod(fd, 0600), 0);

@@ -199,6 +199,63 @@ static void replaced(int kept, int closed) {
     printf("alarm at %ld\n", ms());
 }
 
+static volatile int asked, ended;
+static siginfo_t of_ask, of_end;
+static void on_ask(int number, siginfo_t* info, void* context) {
+    (void)number;
+    (void)context;
+    of_ask = *info;
+    asked++;
+}
+static void on_end(int number, siginfo_t* info, void* context) {
+    (void)number;
+    (void)context;
+    of_end = *info;
+    ended++;
+}
+
+static void install(int number, void (*handler)(int, siginfo_t*, void*)) {
+    struct sigaction action, before;
+    memset(&action, 0, sizeof action);
+    action.sa_sigaction = handler;
+    action.sa_flags = SA_SIGINFO | SA_RESTART;
+    check(sigaction(number, &action, NULL) == 0, "sigaction");
+    check(sigaction(number, NULL, &before) == 0 && before.sa_sigaction == handler, "sigaction before");
+}
+
+/* Who sent a signal, by a handler that takes siginfo. */
+static void origins(void) {
+    install(SIGUSR1, on_ask);
+    install(SIGCHLD, on_end);
+    pid_t child = fork();
+    if (child == 0) {
+        usleep(10000);
+        kill(getppid(), SIGUSR1);
+        usleep(10000);
+        _exit(5);
+    }
+    while (!ended)
+        usleep(1000);
+    printf("asked %d by child %d, user %d, code %d\n", asked, of_ask.si_pid == child,
+           of_ask.si_uid == getuid(), of_ask.si_code == SI_USER);
+    printf("ended %d: child %d, user %d, code %d, status %d\n", ended, of_end.si_pid == child,
+           of_end.si_uid == getuid(), of_end.si_code == CLD_EXITED, of_end.si_status);
+    waitpid(child, NULL, 0);
+    child = fork();
+    if (child == 0) {
+        pause();
+        _exit(6);
+    }
+    raise(SIGUSR1);
+    printf("raised: self %d\n", of_ask.si_pid == getpid());
+    usleep(1000);
+    kill(child, SIGTERM);
+    while (ended < 2)
+        usleep(1000);
+    printf("killed: code %d, status %d\n", of_end.si_code == CLD_KILLED, of_end.si_status);
+    waitpid(child, NULL, 0);
+}
+
 int main(int argc, char** argv) {
     const char* what = argc > 1 ? argv[1] : "";
     self = argv[0];
@@ -217,6 +274,7 @@ int main(int argc, char** argv) {
     if (strcmp(what, "share") == 0) share();
     if (strcmp(what, "pipes") == 0) pipes();
     if (strcmp(what, "signals") == 0) signals();
+    if (strcmp(what, "origins") == 0) origins();
     if (strcmp(what, "shells") == 0) shells();
     if (strcmp(what, "spawns") == 0) spawns();
     if (strcmp(what, "spawn-actions") == 0) spawn_actions(fd);

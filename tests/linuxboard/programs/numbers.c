@@ -1,7 +1,8 @@
-/* Calls that take a process number. `numbers own`: with the program's own numbers, by getpid() and of a child:
- * each is to work. `numbers foreign PID`: with the number of a process of the host: each is to fail with ESRCH.
- * `numbers wait`: what waits for another process of the program, in simulated time. */
+/* Calls that take a process number. `numbers own`: with the program's own numbers, by getpid() and of a
+ * child: each is to work. `numbers foreign PID`: with the number of a process of the host: each is to fail
+ * with ESRCH. `numbers wait`: what waits for another process of the program, in simulated time. */
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <mqueue.h>
@@ -15,6 +16,7 @@
 #include <sys/msg.h>
 #include <sys/resource.h>
 #include <sys/sem.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
@@ -70,7 +72,8 @@ static void try_all(pid_t process, int foreign) {
     expect("sched_rr_get_interval", sched_rr_get_interval(process, &interval), foreign);
     expect("sched_getaffinity", sched_getaffinity(process, sizeof processors, &processors), foreign);
     expect("sched_setaffinity", sched_setaffinity(process, sizeof processors, &processors), foreign);
-    expect("SYS_sched_getaffinity", syscall(SYS_sched_getaffinity, process, sizeof processors, &processors), foreign);
+    expect("SYS_sched_getaffinity", syscall(SYS_sched_getaffinity, process, sizeof processors, &processors),
+           foreign);
     expect("prlimit", prlimit(process, RLIMIT_NOFILE, NULL, &limit), foreign);
     expect("SYS_ioprio_get", syscall(SYS_ioprio_get, 1, process), foreign);
     expect("process_vm_readv", process_vm_readv(process, &to, 1, &from, 1, 0), foreign);
@@ -186,10 +189,44 @@ static void waits(void) {
         if (status != 0) printf("a child ended with %d\n", status);
 }
 
+/* A process's folder in /proc, by its number: whether it is there, by several calls that must agree. */
+static int has_folder(pid_t process) {
+    char path[40];
+    struct stat status;
+    sprintf(path, "/proc/%d", (int)process);
+    const int there = access(path, F_OK) == 0;
+    if ((stat(path, &status) == 0) != there) printf("stat %s\n", path), ++failures;
+    DIR* folder = opendir(path);
+    if ((folder != NULL) != there) printf("opendir %s\n", path), ++failures;
+    if (folder != NULL) closedir(folder);
+    strcat(path, "/stat");
+    FILE* file_of = fopen(path, "r");
+    if ((file_of != NULL) != there) printf("fopen %s\n", path), ++failures;
+    if (file_of != NULL) fclose(file_of);
+    return there;
+}
+
+static void expect_folder(const char* whose, pid_t process, int wanted) {
+    if (has_folder(process) != wanted) printf("/proc of %s %d\n", whose, (int)process), ++failures;
+}
+
+static void folders(pid_t child) {
+    char own[200] = "", mine[200] = "", path[40];
+    sprintf(path, "/proc/%d/exe", (int)getpid());
+    if (readlink("/proc/self/exe", own, sizeof own - 1) < 1 || readlink(path, mine, sizeof mine - 1) < 1 ||
+        strcmp(own, mine) != 0)
+        printf("%s is %s, not %s\n", path, mine, own), ++failures;
+    expect_folder("this process", getpid(), 1);
+    expect_folder("its child", child, 1);
+    expect_folder("init", 1, 0); /* the host's */
+    expect_folder("nobody", 30000, 0);
+}
+
 int main(int count_of_words, char** words) {
     setvbuf(stdout, NULL, _IOLBF, 0);
     if (count_of_words > 2) {
         try_all((pid_t)atoi(words[2]), 1);
+        expect_folder("a stranger", (pid_t)atoi(words[2]), 0);
     } else if (strcmp(words[1], "wait") == 0) {
         waits();
         return 0;
@@ -208,10 +245,12 @@ int main(int count_of_words, char** words) {
         }
         usleep(1000);
         try_all(child, 0);
+        folders(child);
         int status = 0;
         sigqueue(child, SIGTERM, value);
         waitpid(child, &status, 0);
-        if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGTERM) printf("child %x\n", (unsigned)status), ++failures;
+        if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGTERM)
+            printf("child %x\n", (unsigned)status), ++failures;
     }
     printf("failures %d\n", failures);
     return failures != 0;

@@ -249,7 +249,7 @@ int main(int argc, char** argv) {
             take(1);
             i++;
         }
-        /* Nothing is queued any more: no frame comes. */
+        /* Nothing is queued any more: no frame comes, and poll() reports that at once. */
         stream(0);
         stream(1);
         struct pollfd entry = {fd, POLLIN, 0};

@@ -7,6 +7,7 @@
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/process_numbers.h"
+#include "linuxboard/shim/preload/process_paths.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/time/timers.h"
@@ -109,7 +110,8 @@ SHIM_EXPORT int open(const char* path, int flags, ...) {
     const int device = device_of(path);
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(open)(path, flags, mode)) : open_device(device, flags);
+    return device == kNoDevice ? opened(path, REAL(open)(ProcessPath(path), flags, mode))
+                               : open_device(device, flags);
 }
 
 SHIM_EXPORT int open64(const char* path, int flags, ...) {
@@ -120,7 +122,8 @@ SHIM_EXPORT int open64(const char* path, int flags, ...) {
     const int device = device_of(path);
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(open64)(path, flags, mode)) : open_device(device, flags);
+    return device == kNoDevice ? opened(path, REAL(open64)(ProcessPath(path), flags, mode))
+                               : open_device(device, flags);
 }
 
 SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
@@ -132,7 +135,7 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
+    return device == kNoDevice ? opened(path, REAL(openat)(folder, ProcessPath(path), flags, mode))
                                : open_device(device, flags);
 }
 
@@ -145,7 +148,7 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))
+    return device == kNoDevice ? opened(path, REAL(openat64)(folder, ProcessPath(path), flags, mode))
                                : open_device(device, flags);
 }
 

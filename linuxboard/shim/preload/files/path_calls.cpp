@@ -4,6 +4,7 @@
 
 #include "linuxboard/shim/preload/files/device_numbers.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/process_paths.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 
@@ -64,6 +65,11 @@ bool is_device(int folder, const char* path) {
     return device_name(folder, path, false) != nullptr;
 }
 
+/// `path` as the host has it: the stand-in of device `name`, in a process's folder, or as it is.
+ProcessPath on_host(const char* path, const char* name) {
+    return ProcessPath(name != nullptr ? kStandIn : path);
+}
+
 int refused_change() {
     errno = EPERM;
     return -1;
@@ -71,13 +77,13 @@ int refused_change() {
 }  // namespace
 
 SHIM_EXPORT int access(const char* path, int mode) noexcept {
-    return REAL(access)(device_name(path) != nullptr ? kStandIn : path, mode);
+    return REAL(access)(on_host(path, device_name(path)), mode);
 }
 SHIM_EXPORT int faccessat(int folder, const char* path, int mode, int flags) noexcept {
-    return REAL(faccessat)(folder, device_name(folder, path) != nullptr ? kStandIn : path, mode, flags);
+    return REAL(faccessat)(folder, on_host(path, device_name(folder, path)), mode, flags);
 }
 SHIM_EXPORT int euidaccess(const char* path, int mode) noexcept {
-    return REAL(euidaccess)(device_name(path) != nullptr ? kStandIn : path, mode);
+    return REAL(euidaccess)(on_host(path, device_name(path)), mode);
 }
 SHIM_EXPORT int eaccess(const char* path, int mode) noexcept {
     return euidaccess(path, mode);
@@ -86,20 +92,20 @@ SHIM_EXPORT int eaccess(const char* path, int mode) noexcept {
 #define STAT_OF_PATH(call, type)                                                                             \
     SHIM_EXPORT int call(const char* path, type* status) noexcept {                                          \
         const char* name = device_name(path);                                                                \
-        return shown(name, status, REAL(call)(name != nullptr ? kStandIn : path, status));                   \
+        return shown(name, status, REAL(call)(on_host(path, name), status));                                 \
     }                                                                                                        \
     SHIM_EXPORT int __x##call(int version, const char* path, type* status) noexcept {                        \
         const char* name = device_name(path);                                                                \
-        return shown(name, status, REAL(__x##call)(version, name != nullptr ? kStandIn : path, status));     \
+        return shown(name, status, REAL(__x##call)(version, on_host(path, name), status));                   \
     }
 #define STAT_OF_LINK(call, type)                                                                             \
     SHIM_EXPORT int l##call(const char* path, type* status) noexcept {                                       \
         const char* name = device_name(AT_FDCWD, path, false);                                               \
-        return shown(name, status, REAL(l##call)(name != nullptr ? kStandIn : path, status));                \
+        return shown(name, status, REAL(l##call)(on_host(path, name), status));                              \
     }                                                                                                        \
     SHIM_EXPORT int __lx##call(int version, const char* path, type* status) noexcept {                       \
         const char* name = device_name(AT_FDCWD, path, false);                                               \
-        return shown(name, status, REAL(__lx##call)(version, name != nullptr ? kStandIn : path, status));    \
+        return shown(name, status, REAL(__lx##call)(version, on_host(path, name), status));                  \
     }
 #define STAT_OF_DESCRIPTOR(call, type)                                                                       \
     SHIM_EXPORT int f##call(int fd, type* status) noexcept {                                                 \
@@ -120,16 +126,16 @@ STAT_OF_DESCRIPTOR(stat64, Stat64)
 SHIM_EXPORT int fstatat(int folder, const char* path, struct stat* status, int flags) noexcept {
     const char* name = device_name(folder, path, flags);
     if (name != nullptr) return shown(name, status, REAL(stat)(kStandIn, status));
-    return REAL(fstatat)(folder, path, status, flags);
+    return REAL(fstatat)(folder, ProcessPath(path), status, flags);
 }
 SHIM_EXPORT int fstatat64(int folder, const char* path, struct stat64* status, int flags) noexcept {
     const char* name = device_name(folder, path, flags);
     if (name != nullptr) return shown(name, status, REAL(stat64)(kStandIn, status));
-    return REAL(fstatat64)(folder, path, status, flags);
+    return REAL(fstatat64)(folder, ProcessPath(path), status, flags);
 }
 SHIM_EXPORT int statx(int folder, const char* path, int flags, unsigned mask, struct statx* status) noexcept {
     const char* name = device_name(folder, path, flags);
-    if (name == nullptr) return REAL(statx)(folder, path, flags, mask, status);
+    if (name == nullptr) return REAL(statx)(folder, ProcessPath(path), flags, mask, status);
     const int result = REAL(statx)(AT_FDCWD, kStandIn, 0, mask, status);
     if (result != 0) return result;
     const dev_t number = device_number(name);

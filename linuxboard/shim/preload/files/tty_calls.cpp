@@ -321,6 +321,10 @@ int tty_ioctl(OpenFile& file, unsigned long request, void* argument, const void*
     case TIOCNXCL:
         kept_of(file).exclusive = request == TIOCEXCL;
         return 0;
+    case TIOCSTI: {
+        unsigned char byte = 0;
+        return get_from_program(byte, argument) ? simple(file, wire::Op::Insert, byte) : -1;
+    }
     case TIOCSCTTY:
         return 0;
     case TIOCGWINSZ:

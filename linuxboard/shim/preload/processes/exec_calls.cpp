@@ -8,9 +8,9 @@
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/wire/program_kind.h"
 
 #include <dlfcn.h>
-#include <elf.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -30,32 +30,16 @@ using namespace puckloop::shim;
 namespace puckloop::shim {
 
 namespace {
-constexpr int kDeepestScript = 4;
-
 /// Why `file` cannot be conducted, or nullptr. What cannot be executed at all is left to the host.
 const char* obstacle(const char* file, int depth) {
     const int fd = REAL(open)(file, O_RDONLY | O_CLOEXEC);
     if (fd < 0) return nullptr;
-    const char* found = nullptr;
     struct stat status {};
     REAL(fstat)(fd, &status);
-    const bool other_user = (status.st_mode & S_ISUID) != 0 && status.st_uid != geteuid();
-    const bool other_group = (status.st_mode & S_ISGID) != 0 && status.st_gid != getegid();
-    if (other_user || other_group) found = "setuid or setgid, so nothing can be preloaded into it";
+    const char* found = wire::obstacle_of_elf(fd, status).why;
     char head[256] = {};
-    const ssize_t count = pread(fd, head, sizeof head - 1, 0);
-    if (count >= static_cast<ssize_t>(sizeof(Elf64_Ehdr)) && std::memcmp(head, ELFMAG, SELFMAG) == 0) {
-        Elf64_Ehdr header;
-        std::memcpy(&header, head, sizeof header);
-        bool dynamic = header.e_ident[EI_CLASS] != ELFCLASS64;
-        for (int i = 0; i < header.e_phnum && !dynamic; ++i) {
-            Elf64_Phdr segment{};
-            const auto place = static_cast<off_t>(header.e_phoff + static_cast<unsigned>(i) * sizeof segment);
-            dynamic =
-                pread(fd, &segment, sizeof segment, place) == sizeof segment && segment.p_type == PT_INTERP;
-        }
-        if (!dynamic) found = "statically linked, so its system calls cannot be taken over";
-    } else if (count > 2 && head[0] == '#' && head[1] == '!' && depth < kDeepestScript && found == nullptr) {
+    if (found == nullptr && depth < wire::kDeepestScript && pread(fd, head, sizeof head - 1, 0) > 2 &&
+        head[0] == '#' && head[1] == '!') {
         char* word = head + 2 + std::strspn(head + 2, " \t");
         word[std::strcspn(word, " \t\n")] = '\0';
         found = obstacle(word, depth + 1);

@@ -23,6 +23,7 @@ bool path_syscall(long number, const Argument (&a)[6], long* result) {
         PUCKLOOP_SYSCALL(stat, stat(static_cast<const char*>(a[0]), a[1]));
         PUCKLOOP_SYSCALL(lstat, lstat(static_cast<const char*>(a[0]), a[1]));
         PUCKLOOP_SYSCALL(access, access(a[0], a[1]));
+        PUCKLOOP_SYSCALL(readlink, readlink(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(unlink, unlink(a[0]));
         PUCKLOOP_SYSCALL(rename, rename(a[0], a[1]));
         PUCKLOOP_SYSCALL(chmod, chmod(a[0], a[1]));
@@ -38,6 +39,8 @@ bool path_syscall(long number, const Argument (&a)[6], long* result) {
         PUCKLOOP_SYSCALL(statx, statx(a[0], a[1], a[2], a[3], a[4]));
         PUCKLOOP_SYSCALL(faccessat, faccessat(a[0], a[1], a[2], 0));
         PUCKLOOP_SYSCALL(faccessat2, faccessat(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(readlinkat, readlinkat(a[0], a[1], a[2], a[3]));
+        PUCKLOOP_SYSCALL(chdir, chdir(a[0]));
         PUCKLOOP_SYSCALL(unlinkat, unlinkat(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(renameat2, renameat2(a[0], a[1], a[2], a[3], a[4]));
         PUCKLOOP_SYSCALL(fchmodat, fchmodat(a[0], a[1], a[2], 0));

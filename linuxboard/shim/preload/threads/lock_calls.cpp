@@ -13,6 +13,7 @@
 
 #include <cerrno>
 #include <climits>
+#include <cstdint>
 
 using namespace puckloop::shim;
 
@@ -63,9 +64,29 @@ void relock(void* argument) {
     lock_mutex(static_cast<Relock*>(argument)->mutex, kNever);
 }
 
+bool is_shared(const pthread_cond_t* condition) {
+    constexpr unsigned kSharedBit = 1;
+    return (condition->__data.__wrefs & kSharedBit) != 0;
+}
+
+/// In a condition that processes share: how often it was signalled. The C library, which counts its own waits
+/// there, never waits here.
+std::uint64_t* signals_of(pthread_cond_t* condition) {
+    static_assert(sizeof condition->__data.__wseq == sizeof(std::uint64_t));
+    return reinterpret_cast<std::uint64_t*>(&condition->__data.__wseq);
+}
+
+void signal_condition(pthread_cond_t* condition, int count) {
+    if (is_shared(condition)) __atomic_add_fetch(signals_of(condition), 1, __ATOMIC_ACQ_REL);
+    wake(condition, count);
+    charge(page().charges.sync);
+}
+
 int wait_condition(pthread_cond_t* condition, pthread_mutex_t* mutex, Time deadline) {
     mark_call("pthread_cond_wait");
     charge(page().charges.sync);
+    const bool shared = is_shared(condition);
+    const std::uint64_t before = shared ? __atomic_load_n(signals_of(condition), __ATOMIC_ACQUIRE) : 0;
     if (const int error = unlock_mutex(mutex)) return error;
     WaitOptions options;
     options.deadline = deadline;
@@ -74,8 +95,10 @@ int wait_condition(pthread_cond_t* condition, pthread_mutex_t* mutex, Time deadl
     Relock again{mutex};
     Wake reason = Wake::Timeout;
     pthread_cleanup_push(relock, &again);  // a cancelled wait ends with the mutex held
-    constexpr unsigned kSharedBit = 1;
-    reason = park_shared(condition, options, (condition->__data.__wrefs & kSharedBit) != 0);
+    do
+        reason = park_shared(condition, options, shared);
+    while (shared && reason == Wake::Key &&
+           __atomic_load_n(signals_of(condition), __ATOMIC_ACQUIRE) == before);
     pthread_cleanup_pop(0);
     lock_mutex(mutex, kNever);
     return reason == Wake::Timeout ? ETIMEDOUT : 0;
@@ -132,15 +155,13 @@ SHIM_EXPORT int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_
 
 SHIM_EXPORT int pthread_cond_signal(pthread_cond_t* condition) noexcept {
     if (!active()) return REAL(pthread_cond_signal)(condition);
-    wake(condition, 1);
-    charge(page().charges.sync);
+    signal_condition(condition, 1);
     return 0;
 }
 
 SHIM_EXPORT int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
     if (!active()) return REAL(pthread_cond_broadcast)(condition);
-    wake(condition, INT_MAX);
-    charge(page().charges.sync);
+    signal_condition(condition, INT_MAX);
     return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/libc_hooks.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/signal_origins.h"
 #include "linuxboard/shim/preload/time/ahead.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
@@ -37,6 +38,7 @@ Time clock_now = 0;
 Time clock_limit = 0;
 std::uint64_t park_order = 0;
 std::uint64_t pending_signals = 0;  // bit n: signal n
+std::uint64_t from_node = 0;        // of those, with an origin that is known there
 bool conducted = false;
 bool in_node_call = false;
 
@@ -162,7 +164,11 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     clock_now = reply.now;
     clock_limit = reply.limit;
     follow_wall_clock();
-    if (reply.signals != 0) pending_signals |= reply.signals & ~ignored_signals(reply.signals);
+    if (reply.signals != 0) {
+        const std::uint64_t taken = reply.signals & ~ignored_signals(reply.signals);
+        pending_signals |= taken;
+        from_node |= taken;
+    }
     if (reply.changed != 0) wake(external_key(), INT32_MAX);
     expire_deadlines();
 }
@@ -223,6 +229,8 @@ void route_signal() {
             const std::uint64_t bit = std::uint64_t{1} << number;
             if ((pending_signals & bit) == 0 || sigismember(thread->awaited_signals, number) != 1) continue;
             pending_signals &= ~bit;
+            if ((from_node & bit) == 0) own().origins[number] = {};  // an alarm's
+            from_node &= ~bit;
             thread->taken_signal = number;
             thread->awaited_signals = nullptr;
             make_ready(*thread, clock_now, Wake::Signal);
@@ -290,12 +298,16 @@ bool take_signals() {
         sigset_t blocked;
         pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
         publish();
+        const std::uint64_t bit = std::uint64_t{1} << number;
+        if ((from_node & bit) != 0) expect_origin(number);
+        from_node &= ~bit;
         if (sigismember(&blocked, number) == 1) {
             // Some other thread may want it; its handler then runs beside the one that runs.
             host_call(SYS_kill, host_call(SYS_getpid), number);
             continue;
         }
         raise(number);
+        forget_origin(number);
         restarts = restarts && (ignored || (action.sa_flags & SA_RESTART) != 0);
     }
     return restarts;

@@ -73,25 +73,9 @@ SHIM_EXPORT int sem_post(sem_t* semaphore) noexcept {
     return result;
 }
 
-// Barriers and pthread_once: their state is ours while threads wait.
+// pthread_once: its state is ours while threads wait.
 
 namespace {
-struct Barrier {
-    pthread_barrier_t* object = nullptr;
-    unsigned needed = 0;
-    unsigned arrived = 0;
-    unsigned round = 0;
-};
-constexpr int kMostBarriers = 64;
-Barrier barriers[kMostBarriers];
-
-Barrier* find_barrier(const pthread_barrier_t* object) {
-    for (Barrier& barrier : barriers) {
-        if (barrier.object == object) return &barrier;
-    }
-    return nullptr;
-}
-
 struct OnceRun {
     pthread_once_t* control = nullptr;
     Thread* runner = nullptr;
@@ -107,38 +91,34 @@ OnceRun* find_once(const pthread_once_t* control) {
 }
 }  // namespace
 
-SHIM_EXPORT int pthread_barrier_init(pthread_barrier_t* object, const pthread_barrierattr_t* attributes,
-                                     unsigned count) noexcept {
-    const int error = REAL(pthread_barrier_init)(object, attributes, count);
-    if (error != 0 || !active()) return error;
-    Barrier* barrier = find_barrier(object);
-    if (barrier == nullptr) barrier = find_barrier(nullptr);
-    if (barrier == nullptr) {
-        note("more than %d barriers are not supported", kMostBarriers);
-        return EAGAIN;
-    }
-    *barrier = {object, count, 0, 0};
-    return 0;
-}
+// Barriers: the memory of the C library's own object (struct pthread_barrier) has the state, which other
+// processes may share.
+
+namespace {
+struct Barrier {
+    std::uint32_t arrived, round, needed, shared, unused;
+};
+static_assert(sizeof(Barrier) <= sizeof(pthread_barrier_t));
+}  // namespace
 
 SHIM_EXPORT int pthread_barrier_destroy(pthread_barrier_t* object) noexcept {
-    if (Barrier* barrier = active() ? find_barrier(object) : nullptr) *barrier = {};
-    return REAL(pthread_barrier_destroy)(object);
+    return active() ? 0 : REAL(pthread_barrier_destroy)(object);
 }
 
 SHIM_EXPORT int pthread_barrier_wait(pthread_barrier_t* object) noexcept {
-    Barrier* barrier = active() ? find_barrier(object) : nullptr;
-    if (barrier == nullptr) return REAL(pthread_barrier_wait)(object);
+    if (!active()) return REAL(pthread_barrier_wait)(object);
     mark_call("pthread_barrier_wait");
     charge(page().charges.sync);
-    if (++barrier->arrived == barrier->needed) {
-        barrier->arrived = 0;
-        ++barrier->round;
+    auto* barrier = reinterpret_cast<Barrier*>(object);
+    const std::uint32_t round = __atomic_load_n(&barrier->round, __ATOMIC_ACQUIRE);
+    if (__atomic_add_fetch(&barrier->arrived, 1, __ATOMIC_ACQ_REL) >= barrier->needed) {
+        __atomic_store_n(&barrier->arrived, 0, __ATOMIC_RELAXED);
+        __atomic_store_n(&barrier->round, round + 1, __ATOMIC_RELEASE);
         wake(barrier, INT_MAX);
         return PTHREAD_BARRIER_SERIAL_THREAD;
     }
-    for (const unsigned round = barrier->round; barrier->round == round;)
-        park(barrier);
+    while (__atomic_load_n(&barrier->round, __ATOMIC_ACQUIRE) == round)
+        park_shared(barrier, {}, barrier->shared != 0);
     return 0;
 }
 

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/signal_origins.h"
 #include "linuxboard/shim/preload/time/timers.h"
 
 #include <poll.h>
@@ -262,6 +263,7 @@ SHIM_EXPORT int sigtimedwait(const sigset_t* set, siginfo_t* info, const timespe
     if (info != nullptr) {
         *info = {};
         info->si_signo = number;
+        show_origin(number, *info);
     }
     return number;
 }
