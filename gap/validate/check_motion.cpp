@@ -381,6 +381,7 @@ void check_motion(Experiment& experiment) {
             check_heading(experiment, run, std::abs(of_run.ratio()), true);
             check_direction(experiment, run);
         }
+    check_carried(experiment);
 }
 
 }  // namespace puckloop::gap
