@@ -49,6 +49,8 @@ struct Effect {
     /// Multiplies what the wheels are said to have gone, so that errors of the counters draw its numbers to
     /// nothing (gap/identify).
     bool through_counts = false;
+    /// Rests on when single frames were made, by the robot's clock (gap/identify/robot_clock.h).
+    bool rests_on_clock = false;
 };
 
 /// Tables of the catalogue. An effect that acts in several kinds stands in the first of them. Above each: its

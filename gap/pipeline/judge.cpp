@@ -7,6 +7,7 @@
 #include "gap/fit/intervals.h"
 #include "gap/fit_test/wander.h"
 #include "gap/identify/known.h"
+#include "gap/identify/robot_clock.h"
 #include "gap/pipeline/weigh.h"
 #include "gap/stats/series.h"
 
@@ -95,7 +96,7 @@ bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged
 
 /// The same of causes that these data cannot identify.
 bool identified(const Study& study, const Judging& how, Judged& result) {
-    for (const auto& ask : {not_by_counts, not_known}) {
+    for (const auto& ask : {not_by_clock, not_by_counts, not_known}) {
         const NotIdentified out = ask(study, result.chosen.selection.chosen);
         if (out.effects.empty()) continue;
         if (stands_without(study, how, out.effects, out.why, result)) return false;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -166,6 +167,11 @@ DrawnCase noisy_input_case(std::size_t number, std::uint64_t seed) {
                     for (double& one : column.values)
                         one = std::round(one);
             }
+    for (WrittenRun& run : experiment.runs)  // no ruler shows less than nothing
+        for (WrittenColumn& column : run.columns)
+            if (column.name == "distance_m" || column.name == "grey")
+                for (double& one : column.values)
+                    one = std::max(one, 0.0);
     laboratory.keep(experiment);
     drawn.text = fmt::format("{} noted with errors of {:.3g}{}", input.columns.front(), sd,
                              held ? ", the same while it stands" : "") +
