@@ -5,6 +5,7 @@
 #include "gap/data/columns.h"
 #include "gap/data/csv.h"
 #include "gap/data/problems.h"
+#include "gap/data/wheel_units.h"
 #include "gap/sync/sync.h"
 #include "gap/validate/checks.h"
 #include "scenarios/reader/reader.h"
@@ -110,9 +111,12 @@ void read_columns(const TomlValue& table, Experiment& experiment, const std::str
             unit = entry.text("unit", info.unit);
             entry.finish();
         }
-        if (!unit_to_si(unit, info.unit))
+        if (!unit_to_si(unit, info.unit) && !is_wheel_unit(name, unit)) {
+            const std::string_view besides = wheel_units(name);
             fail_at(file, value.line, fmt::format("column {} cannot be in \"{}\"", name, unit),
-                    fmt::format("{}", fmt::join(unit_names(info.unit), ", ")));
+                    fmt::format("{}{}{}", fmt::join(unit_names(info.unit), ", "), besides.empty() ? "" : ", ",
+                                besides));
+        }
         experiment.stated[name] = {from, unit, value.line};
     }
 }
@@ -209,11 +213,11 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
             stated == experiment.stated.end() ? Stated{info.name, info.unit} : stated->second;
         const auto place = std::ranges::find(csv.names, from);
         if (place == csv.names.end()) continue;
-        const ToSi to_si = unit_to_si(unit, info.unit).value();
+        const auto to_si = unit_to_si(unit, info.unit);
         auto& values = run.columns[info.name] =
             csv.columns[static_cast<std::size_t>(place - csv.names.begin())];
         for (double& value : values)
-            value = value * to_si.factor + to_si.offset;
+            if (to_si) value = value * to_si->factor + to_si->offset;
         if (const auto [other, fresh] = used.emplace(from, info.name); !fresh)
             throw InputError(frame.file, "",
                              fmt::format("{} and {} are both the column \"{}\" of {}", other->second,
@@ -226,6 +230,8 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
             throw InputError(path.string(), "header", fmt::format("has no column \"{}\"", stated.from),
                              fmt::format("it, as {} says", frame.file));
     read_constants(reader, experiment.kind, table, frame, run);
+    for (const auto& [name, stated] : experiment.stated)  // t_s is known by now
+        if (run.has(name) && is_wheel_unit(name, stated.unit)) to_steps(experiment, run, name, stated.unit);
     require_columns(experiment.kind, run, csv.names, path, frame);
     std::vector<std::string_view> absent;
     for (const ColumnInfo& info : columns_of(experiment.kind))

@@ -1,9 +1,12 @@
 #include "gap/decide/confirm.h"
 
 #include "gap/decide/thresholds.h"
+#include "gap/evidence/criterion.h"
+#include "gap/stats/series.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap {
@@ -85,6 +88,17 @@ bool same_means(const Study& study, const Fit& fit, const Experiment& half, Moti
     return true;
 }
 
+/// Weights of the rows: those of the first half only.
+Weights of_first(const Study& study, const std::vector<char>& second) {
+    Weights first;
+    for (const Observable& observable : study.model().observables()) {
+        first.emplace_back();
+        for (const std::uint32_t run : observable.run)
+            first.back().push_back(second[run] != 0 ? 0.0 : 1.0);
+    }
+    return first;
+}
+
 }  // namespace
 
 std::string not_confirmed(const Study& study, const Selection& selection, double share_left,
@@ -92,12 +106,7 @@ std::string not_confirmed(const Study& study, const Selection& selection, double
     const Experiment& whole = study.experiment();
     if (whole.runs.size() < thresholds::kRunsToConfirm || study.folds() < 2) return "";
     const auto second = second_half(study, selection);
-    Weights first;
-    for (const Observable& observable : study.model().observables()) {
-        first.emplace_back();
-        for (const std::uint32_t run : observable.run)
-            first.back().push_back(second[run] != 0 ? 0.0 : 1.0);
-    }
+    const Weights first = of_first(study, second);
     Fit half_fit = selection.chosen;
     half_fit.fitted = fit(study.model(), half_fit.freed, half_fit.fitted.state, first, kConfirmingEffort);
     const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kConfirmingEffort);
@@ -108,6 +117,48 @@ std::string not_confirmed(const Study& study, const Selection& selection, double
     const Asked asked = ask(half);
     if (asked.nothing || asked.found <= share_left * (asked.found + won)) return "";
     return fmt::format("fitted on half of the runs, it leaves {} in the other half", asked.what);
+}
+
+Confirmation confirmation_of(const Study& study, const Selection& selection, const ChooseOnHalf& choose) {
+    Confirmation result;
+    const Experiment& whole = study.experiment();
+    if (selection.steps.empty()) return result;
+    if (whole.runs.size() < thresholds::kRunsToConfirm || study.folds() < 2) {
+        result.sentence =
+            fmt::format("Not confirmed: {} run{} make no two halves, one to choose and fit on and "
+                        "one to score; the name rests on runs that chose it.",
+                        whole.runs.size(), whole.runs.size() == 1 ? "" : "s");
+        return result;
+    }
+    auto second = second_half(study, selection);
+    std::vector<char> chooses(second.size());
+    std::ranges::transform(second, chooses.begin(), [](char one) { return static_cast<char>(one == 0); });
+    const std::vector<std::size_t> effects = choose(half_of(whole, chooses));
+    result.scored =
+        static_cast<std::size_t>(std::ranges::count_if(second, [](char one) { return one != 0; }));
+    result.runs = second.size() - result.scored;
+    result.chosen = stats::contains(effects, selection.steps.front().effect);
+    const Weights first = of_first(study, second);
+    const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kConfirmingEffort);
+    if (!effects.empty()) {
+        const auto freed = study.freed_by(effects);
+        // From where all runs ended: a start, which the half's own fit leaves.
+        const Fitted own = fit(study.model(), freed, selection.chosen.fitted.state, first, kConfirmingEffort);
+        result.gain = cost_in(study, none.state, second) - cost_in(study, own.state, second);
+    }
+    const std::string halves = fmt::format("{} runs that chose and fitted it, {} that had no part in either",
+                                           result.runs, result.scored);
+    if (result.chosen && result.gain > kClearGain)
+        result.sentence = fmt::format("Confirmed: {}; there it gains {:.3g} nats.", halves, result.gain);
+    else if (result.chosen)
+        result.sentence = fmt::format("Not confirmed: {}; there it gains {:.2g} nats, which chance may make.",
+                                      halves, result.gain);
+    else
+        result.sentence =
+            fmt::format("Not confirmed: the {} runs of one half alone do not choose it, so no run "
+                        "is left that had no part in its choice. Record more of them.",
+                        result.runs);
+    return result;
 }
 
 }  // namespace puckloop::gap

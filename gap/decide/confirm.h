@@ -3,11 +3,14 @@
 // was found there and asked anew, as an experiment of its own. A cause that is one leaves nothing on runs
 // that had no part in it.
 
+#include "gap/decide/confirmation.h"
 #include "gap/fit/select.h"
 #include "gap/fit/study.h"
 
+#include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace puckloop::gap {
 
@@ -23,5 +26,9 @@ struct Asked {
 /// again.
 std::string not_confirmed(const Study& study, const Selection& selection, double share_left,
                           const std::function<Asked(const Experiment&)>& ask);
+
+/// The effects (candidates) that a half chooses by itself.
+using ChooseOnHalf = std::function<std::vector<std::size_t>(const Experiment&)>;
+Confirmation confirmation_of(const Study& study, const Selection& selection, const ChooseOnHalf& choose);
 
 }  // namespace puckloop::gap

@@ -37,13 +37,16 @@ std::string doubt_of(const Grounds& g) {
         return "leaves too much to be the cause";
     if (g.stopped_at_end && g.structure && !g.only_wanders)
         return "stopped at the end of its plausible range and leaves something";
-    // 4. Role: a cause gains by what it is said to do, means by means, scatter by what is scatter.
-    // 5. Confirmation, on runs that had no part in it.
+    // 4. Identification by these data: its numbers must be theirs, not those of their noise.
+    if (!g.not_identified.empty()) return g.not_identified;
+    // 5. Role: a cause gains by what it is said to do, means by means, scatter by what is scatter.
+    // 6. Confirmation, on runs that had no part in it.
     return g.out_of_role.empty() ? g.not_confirmed : g.out_of_role;
 }
 
 Decision decision_of(const Grounds& g, const std::string& doubt) {
     if (g.causes > 0 && doubt.empty()) return g.rival ? Decision::CannotTell : Decision::Named;
+    if (g.causes > 0 && !doubt.empty() && doubt == g.not_identified) return Decision::NotIdentifiable;
     // Something is wrong where a structure is sure, or where the causes that were doubted gained for sure
     // what is not the errors' own law.
     const bool gained = g.causes > 0 && g.error_falls && !g.law_alone && !g.in_rounding;

@@ -9,7 +9,7 @@
 
 namespace puckloop::gap {
 
-enum class Decision { Named, CannotTell, NoEffect, Unexplained };
+enum class Decision { Named, CannotTell, NoEffect, Unexplained, NotIdentifiable };
 
 /// What a decision rests on.
 struct Grounds {
@@ -23,6 +23,7 @@ struct Grounds {
     bool in_rounding = false;     ///< no cause moves readings by more than their rounding
     bool error_falls = true;      ///< of few runs: for sure
     bool law_alone = false;       ///< a law of errors without a mechanism gains as much
+    std::string not_identified;   ///< why these data cannot identify the causes; empty: they can
     std::string out_of_role;      ///< why a cause does not do what it is said to do; empty: all do
 
     // Goodness of fit: nats that corrections without a mechanism gain beside the causes, on held-out rows.

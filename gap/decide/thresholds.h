@@ -63,6 +63,11 @@ inline constexpr std::size_t kRunsToConfirm = 4;
 /// division) and not rounded, and 1 / sqrt(12), the sd of rounding itself.
 inline constexpr double kRounding = 0.5 + 0.2887;
 
+/// Of a number's prior width: the standard deviation that the data leave it, at most, to be known by them.
+/// The whole of it: a number known no better than it was believed is not measured, whatever the likelihood
+/// gains.
+inline constexpr double kNarrower = 1.0;
+
 // Selection. BIC screens, what decides is the held-out score (gap/evidence/criterion.h).
 
 /// Better by BIC at all: worth the held-out look.

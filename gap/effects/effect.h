@@ -21,6 +21,7 @@ struct EffectParameter {
     const char* unless = nullptr;  ///< not freed where the model has this parameter, which does the same
     double resolution = 0.0;       ///< the model says no finer what it is, parameter's unit
     bool threshold = false;        ///< acts only where something tried meets it: no row moves between
+    double possible = 0.0;         ///< within this factor of what the experiment states; 0: anything
 };
 
 /// What an effect is said to do to the measurements.
@@ -45,6 +46,11 @@ struct Effect {
     /// What the catalogue does not have and is taken for it, and what separates the two: a caution of any
     /// verdict that names it. nullptr: nothing is known.
     const char* mistaken = nullptr;
+    /// Multiplies what the wheels are said to have gone, so that errors of the counters draw its numbers to
+    /// nothing (gap/identify).
+    bool through_counts = false;
+    /// Rests on when single frames were made, by the robot's clock (gap/identify/robot_clock.h).
+    bool rests_on_clock = false;
 };
 
 /// Tables of the catalogue. An effect that acts in several kinds stands in the first of them. Above each: its

@@ -104,13 +104,13 @@ std::vector<Effect> timing_effects() {
         // Radio and operating system deliver at their own ticks. t_host = ceil(t / B) B
         {"batching", 63, "the host hands frames over in batches",
          {{"timing.batch", 0.001, 1.0, 0.001, "ticks of 5..50 ms, USB polled every 1 ms; intervals bimodal", {0.02}, nullptr, 1e-6}},
-         "the overlay's [linux] tty_batch", "log the robot's own clock"},
+         "the overlay's [linux] tty_batch", "log the robot's own clock", {}, Mean, false, {}, nullptr, false, true},
         // The program waits so long for an answer, and a batch comes later. whole if ceil(t / B) B - t < L
         {"late_answers", 67, "answers that a batch brings too late are given up",
          {{"timing.batch", 0.001, 1.0, 0.001, "as batching", {0.02}, nullptr, 1e-6},
           {"timing.answer_limit", 0.001, 1.0, 0.02, "10 to 100 ms in robots' programs", {0.015}}},
          "the overlay's [linux] tty_batch; giving up emerges from the program", "a program that waits longer",
-         {"frame_ok"}},
+         {"frame_ok"}, Mean, false, {}, nullptr, false, true},
     };
 }
 // clang-format on

@@ -14,6 +14,7 @@ struct Freed {
     double low = 0.0, high = 0.0, prior_sd = 1.0, centre = 0.0;
     double resolution = 0.0;  ///< no interval is narrower than this to either side
     bool threshold = false;   ///< moves no row until it meets something that was tried
+    double possible = 0.0;    ///< within this factor of neutral; 0: anything
 };
 
 /// Where a fit starts and where it ended.

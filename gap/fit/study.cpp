@@ -56,8 +56,8 @@ std::string design_of(Kind kind, const Run& run) {
 /// One effect's parameter on one index of the model.
 Freed freed_at(const Model& model, const EffectParameter& parameter, std::size_t index) {
     const double neutral = model.parameters()[index].neutral;
-    Freed freed{index,   parameter.low,        parameter.high,     parameter.prior_sd,
-                neutral, parameter.resolution, parameter.threshold};
+    Freed freed{index,   parameter.low,        parameter.high,      parameter.prior_sd,
+                neutral, parameter.resolution, parameter.threshold, parameter.possible};
     const bool within = neutral >= parameter.low && neutral <= parameter.high;
     if (!within && neutral == 0.0) {  // off
         freed.centre =

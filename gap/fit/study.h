@@ -70,6 +70,9 @@ class Study {
     /// From the part's fit of a set to one of all rows; the part leaves `from` what it does not know.
     Fit from_part(const Fit& guess, const State& from, const Effort& effort = kThorough) const;
 
+    /// What these effects estimate.
+    std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
+
     /// `state` with one effect's parameters back at neutral.
     State without(std::size_t effect, State state) const;
     /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
@@ -98,7 +101,6 @@ class Study {
     bool lighten_tails(State& state) const;
     double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
-    std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
 
     std::unique_ptr<Experiment> own_;  // of a part
     const Experiment& experiment_;

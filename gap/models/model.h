@@ -97,6 +97,13 @@ struct Nuisance {
     bool wanders = false;  ///< lets sums wander, but at `high`
 };
 
+/// What the wheels are said to have gone in each row, by counters or commands; m by the experiment's nominal
+/// numbers.
+struct WheelRows {
+    std::vector<double> left, right, time;
+    double quantum = 0.0;  ///< of a counter; 0: nothing was counted
+};
+
 class Model {
   public:
     virtual ~Model() = default;
@@ -119,6 +126,9 @@ class Model {
     /// Other values of this parameter that rows may be unable to part from `value`: of a period those that
     /// meet the rows alike. To be tried; mostly none.
     virtual std::vector<double> aliases(std::string_view, double) const { return {}; }
+
+    /// Of the rows of the first observable, where it is a drive; else nothing.
+    virtual WheelRows wheels(const std::vector<double>&) const { return {}; }
 
     /// Parameters of the simulator that the model took from the data without fitting them, where they are not
     /// neutral.

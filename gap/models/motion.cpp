@@ -102,6 +102,26 @@ class MotionModel final : public ModelOf<MotionNumbers> {
         if (counted_) predict_counters(now, out);
     }
 
+    WheelRows wheels(const std::vector<double>& v) const override {
+        const MotionNumbers now = numbers(v);
+        const double metre = nominal().metre(), late = now.delay + (counted_ ? 0.0 : now.latency);
+        WheelRows rows;
+        rows.quantum = has_counters_ ? metre : 0.0;
+        for (const Path& path : paths_) {
+            CurveReader left(path.wheel[0]), right(path.wheel[1]);
+            std::array<double, 2> last{};
+            for (std::size_t i = 0; i < path.time.size(); ++i) {
+                const double time = path.time[i] - late;
+                const std::array<double, 2> steps{left.at(time), right.at(time)};
+                rows.left.push_back(i == 0 ? 0.0 : (steps[0] - last[0]) * metre);
+                rows.right.push_back(i == 0 ? 0.0 : (steps[1] - last[1]) * metre);
+                rows.time.push_back(path.time[i]);
+                last = steps;
+            }
+        }
+        return rows;
+    }
+
     /// A dead band begins between the fastest speed that moved nothing and the next one.
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter != "robot.deadband") return {};
@@ -158,7 +178,8 @@ class MotionModel final : public ModelOf<MotionNumbers> {
             rows.observable("x_m", NoiseKind::Level,
                             {{y, "y_m"}, {theta, "theta_rad"}, {load, "load_kg"}, {incline, "incline_rad"}});
         const std::vector<double>& x = base.y;
-        counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
+        has_counters_ = experiment.has("steps_left");
+        counted_ = has_counters_ && experiment.has("cmd_left");
         exact_ = experiment.nominal_or("firmware.agenda", 1.0) == 0;
         const Motor motor = motor_of(experiment);
         std::array<std::vector<double>, 3> sums;
@@ -498,8 +519,9 @@ class MotionModel final : public ModelOf<MotionNumbers> {
     MotionView view_;
     std::vector<Path> paths_;
     std::vector<double> along_;  // way along the tracker's heading, a row each
-    bool counted_ = false;
-    bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
+    bool has_counters_ = false;
+    bool counted_ = false;  ///< counters and commands
+    bool exact_ = false;    ///< wheels keep to their commands: no agenda makes a staircase of them
 };
 
 }  // namespace

@@ -2,10 +2,12 @@
 
 #include "gap/next_experiment/designs.h"
 #include "gap/stats/series.h"
+#include "physics/description/robot_constants.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -102,33 +104,80 @@ std::vector<Suggestion> ranked(const std::vector<Worth>& worths) {
     return out;
 }
 
-std::vector<Suggestion> suggestions_for(const Study& study, const Selection& selection) {
-    std::vector<Suggestion> out;
-    if (selection.draws.empty()) return out;
-    const Draw& draw = selection.draws.front();
-    const auto name = [&](std::size_t candidate) {
-        return std::string(study.candidates()[candidate].effect->name);
-    };
-    const std::vector<Design> designs = designs_of(study.experiment());
+namespace {
+
+/// Each design's worth between two states, both ways round; done as often as the longest of them takes: what
+/// only has more rows separates no better.
+template <class States>
+std::vector<Worth> worths_of(const std::vector<Design>& designs, const States& states) {
     std::size_t rows = 0;
     for (const Design& design : designs)
         rows = std::max(rows, design.experiment.rows());
     std::vector<Worth> worths;
     for (const Design& design : designs) {
         const auto model = make_model(design.experiment);
-        const State chosen = carried(study.model(), selection.chosen.fitted.state, *model);
-        const State rival = carried(study.model(), draw.fit.fitted.state, *model);
-        const double nats = (expected_nats(*model, chosen, rival) + expected_nats(*model, rival, chosen)) / 2;
-        // As often as the longest of them takes: what only has more rows separates no better.
+        const auto [one, other] = states(*model);
+        const double nats = (expected_nats(*model, one, other) + expected_nats(*model, other, one)) / 2;
         worths.push_back(
             {design.what, nats * static_cast<double>(rows) / static_cast<double>(design.experiment.rows())});
     }
-    const std::vector<std::string> between{name(draw.chosen), name(draw.rival)};
-    out = ranked(worths);
-    // Where no design of the grid tells them apart, the catalogue's own advice stands alone.
-    if (out.empty()) out.push_back({study.candidates()[draw.chosen].effect->separated_by, NAN, {}});
+    return worths;
+}
+
+/// Do drives of the grid, which are in steps a second, suit this robot?
+bool is_like_e_puck(const Experiment& experiment) {
+    constexpr double kAlike = 3.0;
+    const double step = experiment.nominal_or("robot.wheel_radius_left", physics::kWheelRadius) /
+                        physics::kWheelRadius * physics::kStepsPerTurn /
+                        experiment.nominal_or("robot.steps_per_turn", physics::kStepsPerTurn);
+    return step < kAlike && step > 1 / kAlike;
+}
+
+/// The best of them; where no design of the grid is worth anything, the catalogue's own advice.
+std::vector<Suggestion> advised(const std::vector<Worth>& worths, const Effect& effect,
+                                const std::vector<std::string>& between) {
+    std::vector<Suggestion> out = ranked(worths);
+    if (out.empty()) out.push_back({effect.separated_by, NAN, {}});
     for (Suggestion& one : out)
         one.between = between;
+    return out;
+}
+
+}  // namespace
+
+std::vector<Suggestion> suggestions_for(const Study& study, const Selection& selection) {
+    if (selection.draws.empty()) return {};
+    const Draw& draw = selection.draws.front();
+    const Effect &chosen = *study.candidates()[draw.chosen].effect,
+                 &rival = *study.candidates()[draw.rival].effect;
+    const auto worths = worths_of(designs_of(study.experiment()), [&](const Model& model) {
+        return std::pair(carried(study.model(), selection.chosen.fitted.state, model),
+                         carried(study.model(), draw.fit.fitted.state, model));
+    });
+    return advised(worths, chosen, {chosen.name, rival.name});
+}
+
+std::vector<Suggestion> identifying(const Study& study, const Fit& none,
+                                    const std::vector<std::size_t>& effects) {
+    std::vector<Suggestion> out;
+    const std::vector<Design> designs = designs_of(study.experiment());
+    for (const std::size_t effect : effects) {
+        const Candidate& candidate = study.candidates()[effect];
+        std::vector<Worth> worths;
+        if (is_like_e_puck(study.experiment()))
+            worths = worths_of(designs, [&](const Model& model) {
+                const State without = carried(study.model(), none.fitted.state, model);
+                State with = without;
+                for (const Freed& freed : candidate.freed)
+                    if (const auto index = model.find(study.model().parameters()[freed.index].name))
+                        with.values[*index] =
+                            std::clamp(freed.centre + freed.prior_sd, freed.low, freed.high);
+                return std::pair(with, without);
+            });
+        const auto best = advised(worths, *candidate.effect, {candidate.effect->name, "nothing"}).front();
+        if (std::ranges::none_of(out, [&](const Suggestion& one) { return one.what == best.what; }))
+            out.push_back(best);
+    }
     return out;
 }
 

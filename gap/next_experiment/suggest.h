@@ -23,4 +23,9 @@ std::vector<Suggestion> ranked(const std::vector<Worth>& worths);
 /// For each pair of draws: what the catalogue proposes, with the information it would give, best first.
 std::vector<Suggestion> suggestions_for(const Study& study, const Selection& selection);
 
+/// For effects that the data at hand cannot identify: what would separate each, of one prior width, from
+/// nothing. `none`: the fit without them.
+std::vector<Suggestion> identifying(const Study& study, const Fit& none,
+                                    const std::vector<std::size_t>& effects);
+
 }  // namespace puckloop::gap

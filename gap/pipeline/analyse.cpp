@@ -16,6 +16,7 @@ namespace puckloop::gap {
 namespace {
 
 Asked asked(const Experiment& half, const Options& options, MotionView view);
+std::vector<std::size_t> chosen_on(const Experiment& half, const Options& options, MotionView view);
 
 /// An experiment from one view. The first step of the search stands by itself, since views compete by it.
 class Analysis {
@@ -45,10 +46,19 @@ class Analysis {
 
     Verdict verdict() {
         Judged judged = decided(true);
-        if (judged.decision == Decision::Named) search_.find_rivals(judged.chosen.selection);
+        if (judged.decision == Decision::Named) {
+            search_.find_rivals(judged.chosen.selection);
+            report("choosing on half of the runs", 0.94);
+            judged.confirmation =
+                confirmation_of(study_, judged.chosen.selection,
+                                [&](const Experiment& half) { return chosen_on(half, options_, view_); });
+        }
         report("intervals", 0.96);
         return verdict_of(study_, std::move(judged), options_.seed);
     }
+
+    /// After first(); once: what is selected, not judged.
+    std::vector<std::size_t> chosen() { return search_.rest().chosen.effects; }
 
     const Effect& effect(std::size_t candidate) const { return *study_.candidates()[candidate].effect; }
 
@@ -77,6 +87,15 @@ Asked asked(const Experiment& half, const Options& options, MotionView view) {
     result.what =
         steps.empty() ? "structure" : fmt::format("\"{}\"", other.effect(steps.front().effect).title);
     return result;
+}
+
+/// What half of an experiment selects by itself.
+std::vector<std::size_t> chosen_on(const Experiment& half, const Options& options, MotionView view) {
+    Options quiet = options;
+    quiet.progress = nullptr;
+    Analysis own(half, quiet, view);
+    (void)own.first();
+    return own.chosen();
 }
 
 }  // namespace

@@ -199,6 +199,7 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.decision = judged.decision;
     verdict.grounds = judged.grounds;
     verdict.doubt = judged.doubt;
+    verdict.confirmation = judged.confirmation;
     verdict.unexplained_share = judged.unexplained;
     if (judged.refused)
         verdict.nearest = causes_of(study, *judged.refused, precision_of(study, judged.refused->final),
@@ -217,7 +218,9 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
             if (!caution.empty()) verdict.cautions.push_back(caution);
     verdict.grounds.rival = doubtful(verdict);
     if (verdict.decision == Decision::Named) verdict.decision = decision_of(verdict.grounds, "");
-    verdict.suggestions = suggestions_for(study, judged.chosen.selection);
+    verdict.suggestions = verdict.decision == Decision::NotIdentifiable
+                              ? identifying(study, judged.chosen.selection.none, judged.not_identified)
+                              : suggestions_for(study, judged.chosen.selection);
     verdict.heldout.sentence = gain_sentence(verdict.heldout);
     verdict.summary = summary_of(verdict);
     return verdict;

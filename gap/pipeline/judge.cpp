@@ -6,6 +6,8 @@
 #include "gap/evidence/criterion.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit_test/wander.h"
+#include "gap/identify/known.h"
+#include "gap/identify/robot_clock.h"
 #include "gap/pipeline/weigh.h"
 #include "gap/stats/series.h"
 
@@ -70,20 +72,38 @@ Chosen taken_back(const Chosen& all, const std::string& doubt) {
 
 /// Causes that are doubted by themselves go where the first of them stands without them; then true, and those
 /// that stay have to be asked again.
-bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged& result) {
-    if (out.effects.empty()) return false;
-    auto rest = without_doubted(study, result.chosen.selection, out.effects, out.why);
-    if (!rest) {
-        result.grounds.out_of_role = out.why;
-        result.grounds.law_alone = out.law_alone;
-        return false;
-    }
-    for (const std::size_t one : out.effects)
+bool stands_without(const Study& study, const Judging& how, const std::vector<std::size_t>& doubted,
+                    const std::string& why, Judged& result) {
+    auto rest = without_doubted(study, result.chosen.selection, doubted, why);
+    if (!rest) return false;
+    for (const std::size_t one : doubted)
         result.cautions.push_back(fmt::format("{} would have to be part of it, but {}: not named",
-                                              study.candidates()[one].effect->name, out.why));
+                                              study.candidates()[one].effect->name, why));
     result.chosen = std::move(*rest);
     result.diagnosis = diagnosed(study, result.chosen, how.seed);
     result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
+    return true;
+}
+
+/// The same of causes that are out of their role.
+bool let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged& result) {
+    if (out.effects.empty()) return false;
+    if (stands_without(study, how, out.effects, out.why, result)) return true;
+    result.grounds.out_of_role = out.why;
+    result.grounds.law_alone = out.law_alone;
+    return false;
+}
+
+/// The same of causes that these data cannot identify.
+bool identified(const Study& study, const Judging& how, Judged& result) {
+    for (const auto& ask : {not_by_clock, not_by_counts, not_known}) {
+        const NotIdentified out = ask(study, result.chosen.selection.chosen);
+        if (out.effects.empty()) continue;
+        if (stands_without(study, how, out.effects, out.why, result)) return false;
+        result.grounds.not_identified = out.why;
+        result.not_identified = out.effects;
+        return true;
+    }
     return true;
 }
 
@@ -138,6 +158,8 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
         let_go(study, how, {maybe_nothing(study, result.chosen.selection), "it may as well be nothing"},
                result);
     while (goes_on() && let_go(study, how, roles(), result)) {
+    }
+    while (goes_on() && !identified(study, how, result)) {
     }
     if (goes_on() && how.ask) g.not_confirmed = confirmation();
     result.doubt = doubt_of(g);

@@ -26,7 +26,9 @@ struct Judged {
     /// What came nearest, where it was taken back.
     std::optional<Chosen> refused;
     std::vector<std::pair<std::size_t, FormVerdict>> refused_forms;
-    std::vector<std::string> cautions;  ///< of causes that were let go
+    std::vector<std::size_t> not_identified;  ///< of what was taken back: what these data cannot identify
+    Confirmation confirmation;                ///< of what is named
+    std::vector<std::string> cautions;        ///< of causes that were let go
 };
 
 /// How a set of causes is put to the test of runs that had no part in it.

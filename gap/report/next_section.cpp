@@ -99,6 +99,9 @@ std::string next_section(const Verdict& verdict) {
     case Decision::Unexplained:
         look_at_what_is_left(verdict, steps);
         break;
+    case Decision::NotIdentifiable:
+        steps.emplace_back("Use no overlay: these data do not fix the number of any cause.");
+        break;
     case Decision::NoEffect:
         steps.emplace_back("Nothing has to be changed: within the noise of these runs the simulator agrees.");
         break;

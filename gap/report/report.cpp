@@ -23,6 +23,7 @@ h3 { font-size: 10pt; margin: 4mm 0 1mm; break-after: avoid; }
 .verdict { border: 1.5px solid #444; border-left-width: 5mm; padding: 3mm 4mm; margin: 3mm 0; break-inside: avoid; }
 .verdict.named { border-color: #2e7d4f; } .verdict.no_effect { border-color: #777; }
 .verdict.cannot_tell { border-color: #b8860b; } .verdict.unexplained { border-color: #a33; }
+.verdict.not_identifiable { border-color: #b8860b; }
 .verdict .word { font-size: 13pt; font-weight: bold; }
 .verdict p { margin: 1.5mm 0; }
 table { border-collapse: collapse; width: 100%; font-size: 8.5pt; margin: 1mm 0 3mm; }

@@ -17,9 +17,9 @@ std::string paragraph(const std::string& text) {
 }
 
 /// In the order of Decision.
-constexpr const char* kWords[] = {"The cause is named", "Cannot tell: two explanations are as good",
-                                  "No effect found: nothing to gain",
-                                  "Structure remains that nothing in the catalogue explains"};
+constexpr const char* kWords[] = {
+    "The cause is named", "Cannot tell: two explanations are as good", "No effect found: nothing to gain",
+    "Structure remains that nothing in the catalogue explains", "Not identifiable by these data"};
 
 std::string called(const Cause& cause) {
     return fmt::format("{} (effect {})", cause.title, cause.number);
@@ -47,6 +47,7 @@ std::string verdict_section(const Verdict& verdict) {
         if (said.insert(cause.sentence).second) out += paragraph(cause.sentence);
     if (verdict.summary.find(verdict.heldout.sentence) == std::string::npos)
         out += paragraph(verdict.heldout.sentence);
+    out += paragraph(verdict.confirmation.sentence);
     return out + "</div>\n";
 }
 

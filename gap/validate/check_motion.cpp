@@ -378,9 +378,12 @@ void check_motion(Experiment& experiment) {
         if (run.has("steps_left")) {
             Pairs of_run;
             add_turns(experiment, run, of_run);
-            check_heading(experiment, run, std::abs(of_run.ratio()), true);
+            // Counters that err turn the robot by their errors: no unit.
+            const bool together = !std::isnan(of_run.factor(kClear));
+            check_heading(experiment, run, std::abs(of_run.ratio()), together);
             check_direction(experiment, run);
         }
+    check_carried(experiment);
 }
 
 }  // namespace puckloop::gap

@@ -27,6 +27,8 @@ void check_nominal(Experiment& experiment);
 void check_kind(Experiment& experiment);
 /// Of a motion experiment: units, sides, headings, counters.
 void check_motion(Experiment& experiment);
+/// A caution for each run in which the robot went without its wheels, with the rows.
+void check_carried(Experiment& experiment);
 /// m of way for a step of the left wheel, by the nominal numbers.
 double metres_per_step(const Experiment& experiment);
 

@@ -4,6 +4,7 @@
 #include "gap/stats/profile.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -41,6 +42,15 @@ std::string advice_sentence(const std::vector<Suggestion>& suggestions) {
     if (best.bits >= kLeastBits) return fmt::format("This experiment would: {}.", best.what);
     return fmt::format("None of the experiments that were looked at would; the catalogue's advice is: {}.",
                        best.what);
+}
+
+/// What would measure what these data cannot.
+std::string identify_sentence(const std::vector<Suggestion>& suggestions) {
+    if (suggestions.empty()) return "No experiment was found that would identify it.";
+    std::vector<std::string> whats;
+    for (const Suggestion& one : suggestions)
+        whats.push_back(one.what);
+    return fmt::format("This would identify it: {}.", fmt::join(whats, "; "));
 }
 
 }  // namespace
@@ -112,7 +122,7 @@ std::string gain_sentence(const Held& held) {
 }
 
 std::string summary_of(const Verdict& verdict) {
-    std::vector<std::string> titles;
+    std::vector<std::string> titles, names_of;
     for (const Cause& cause : verdict.causes) {
         titles.push_back(cause.title);
         if (verdict.decision != Decision::Named) continue;
@@ -141,6 +151,13 @@ std::string summary_of(const Verdict& verdict) {
             sure.empty() ? "" : fmt::format("The simulation is wrong because {}. ", listed(sure, "and"));
         return fmt::format("{}Cannot tell whether {}. {} {}", known, listed(names, "or"),
                            advice_sentence(verdict.suggestions), verdict.heldout.sentence);
+    }
+    case Decision::NotIdentifiable: {
+        for (const Cause& cause : verdict.nearest)
+            names_of.push_back(cause.title);
+        return fmt::format("What differs cannot be put down to a cause by these data. What comes nearest is "
+                           "that {}, but {}. {}",
+                           listed(names_of, "and"), verdict.doubt, identify_sentence(verdict.suggestions));
     }
     case Decision::Unexplained:
         break;

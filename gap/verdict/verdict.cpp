@@ -139,6 +139,7 @@ Json grounds_json(const Grounds& g) {
             {"only_wanders", g.only_wanders},
             {"assumed", g.assumed},
             {"law_alone", g.law_alone},
+            {"not_identified", g.not_identified},
             {"out_of_role", g.out_of_role},
             {"not_confirmed", g.not_confirmed}};
 }
@@ -158,7 +159,8 @@ Json rerun_json(const Rerun& rerun) {
 }  // namespace
 
 std::string_view decision_name(Decision decision) {
-    constexpr std::string_view kNames[] = {"named", "cannot_tell", "no_effect", "unexplained"};
+    constexpr std::string_view kNames[] = {"named", "cannot_tell", "no_effect", "unexplained",
+                                           "not_identifiable"};
     return kNames[static_cast<std::size_t>(decision)];
 }
 
@@ -197,6 +199,12 @@ std::string to_json(const Verdict& verdict) {
         {"grounds", grounds_json(verdict.grounds)},
         {"doubt", verdict.doubt},
         {"nearest", verdict.nearest},
+        {"confirmation",
+         {{"runs", verdict.confirmation.runs},
+          {"scored", verdict.confirmation.scored},
+          {"chosen", verdict.confirmation.chosen},
+          {"gain", verdict.confirmation.gain},
+          {"sentence", verdict.confirmation.sentence}}},
         {"tried", verdict.tried},
         {"nuisance", verdict.nuisance},
         {"posterior_predictive", verdict.predictive},

@@ -3,6 +3,7 @@
 // beside them.
 
 #include "gap/data/experiment.h"
+#include "gap/decide/confirmation.h"
 #include "gap/decide/decide.h"
 #include "gap/predictive/predictive.h"
 
@@ -13,7 +14,8 @@
 
 namespace puckloop::gap {
 
-std::string_view decision_name(Decision decision);  ///< "named", "cannot_tell", "no_effect", "unexplained"
+/// "named", "cannot_tell", "no_effect", "unexplained", "not_identifiable"
+std::string_view decision_name(Decision decision);
 
 /// What a person calls an observable: "distance along the heading" for "along"; columns by their own names.
 std::string plain_observable(const std::string& name);
@@ -159,6 +161,7 @@ struct Verdict {
     std::string doubt;                 ///< why what came nearest is no cause, in words that follow "but"
     std::vector<Cause> nearest;        ///< where nothing stands as a cause: what came nearest, and left much
     Grounds grounds;                   ///< of the causes, as they were selected
+    Confirmation confirmation;         ///< of what is named, on runs that had no part in it
     std::vector<Tried> tried;
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;

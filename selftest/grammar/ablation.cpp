@@ -16,6 +16,7 @@ std::span<const Rule> rules() {
         {"share left: bent forms", [](Grounds& g) { g.left_by_form = 0.0; }},
         {"share left: numbers of runs", [](Grounds& g) { g.left_by_run = 0.0; }},
         {"stopped at the end of its range", [](Grounds& g) { g.stopped_at_end = false; }},
+        {"identified by these data", [](Grounds& g) { g.not_identified.clear(); }},
         {"role", [](Grounds& g) { g.out_of_role.clear(); }},
         {"confirmation", [](Grounds& g) { g.not_confirmed.clear(); }},
         {"no rival", [](Grounds& g) { g.rival = false; }},

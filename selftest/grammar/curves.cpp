@@ -93,7 +93,7 @@ Said said_of(const Outcome& one) {
             one.of == Class::Known ? one.right : one.of == Class::NearMiss && !one.wrong_family;
         return right ? Said::RightName : Said::OtherName;
     }
-    if (one.said == "unexplained") return Said::Unexplained;
+    if (one.said == "unexplained" || one.said == "not_identifiable") return Said::Unexplained;
     if (one.said == "cannot_tell") return Said::CannotTell;
     return one.said == "no_effect" ? Said::NoEffect : Said::Failed;
 }
@@ -108,6 +108,8 @@ bool rightly(const Outcome& one) {
         return said == Said::RightName;
     case Class::NearMiss:
         return open || said == Said::RightName;
+    case Class::NoisyInput:
+        return open || said == Said::NoEffect;
     default:
         return open;
     }

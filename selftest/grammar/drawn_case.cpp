@@ -139,7 +139,7 @@ void draw_known(DrawnCase& drawn, std::size_t bench, std::size_t least_runs, Ran
 }  // namespace
 
 const char* class_name(Class of) {
-    constexpr const char* names[] = {"null", "known", "near miss", "unknown"};
+    constexpr const char* names[] = {"null", "known", "near miss", "unknown", "noisy input"};
     return names[static_cast<int>(of)];
 }
 

@@ -11,7 +11,7 @@
 
 namespace puckloop::gap::selftest::grammar {
 
-enum class Class { Null, Known, NearMiss, Unknown };
+enum class Class { Null, Known, NearMiss, Unknown, NoisyInput };
 const char* class_name(Class of);
 
 struct DrawnCase {

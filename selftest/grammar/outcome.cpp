@@ -4,6 +4,7 @@
 #include "gap/stats/tails.h"
 #include "selftest/grammar/ablation.h"
 #include "selftest/grammar/families.h"
+#include "selftest/grammar/noisy_inputs.h"
 #include "selftest/run_cases.h"
 
 #include <fmt/format.h>
@@ -68,7 +69,8 @@ std::vector<std::size_t> numbers_of(const Drawing& drawing) {
         const bool asked = drawing.only.empty() ||
                            std::find(drawing.only.begin(), drawing.only.end(), n) != drawing.only.end();
         const bool kind = drawing.kind.empty() || benches()[n % benches().size()]->kind() == drawing.kind;
-        if (asked && kind && (!drawing.of || class_of(n) == *drawing.of)) numbers.push_back(n);
+        if (asked && kind && (!drawing.of || *drawing.of == Class::NoisyInput || class_of(n) == *drawing.of))
+            numbers.push_back(n);
     }
     return numbers;
 }
@@ -88,9 +90,11 @@ Outcome tried(const Drawing& drawing, std::size_t number, const DrawnCase& drawn
 
 std::vector<Outcome> run_drawn(const Drawing& drawing) {
     const auto numbers = numbers_of(drawing);
+    const bool noisy = drawing.of == Class::NoisyInput;
     const auto one = [&](std::size_t k) {
-        return tried(drawing, numbers[k], drawn_case(numbers[k], drawing.seed, drawing.draw_runs),
-                     fmt::format("case{:04}", numbers[k]));
+        const DrawnCase drawn = noisy ? noisy_input_case(numbers[k], drawing.seed)
+                                      : drawn_case(numbers[k], drawing.seed, drawing.draw_runs);
+        return tried(drawing, numbers[k], drawn, fmt::format("case{:04}", numbers[k]));
     };
     return run_all(numbers.size(), drawing.workers, one,
                    [&](std::size_t, const Outcome& outcome, std::size_t done) {

@@ -24,7 +24,7 @@ Rate counted(const std::vector<Outcome>& cases, const Belongs& belongs, const Hi
 }
 
 bool unexplained(const Outcome& one) {
-    return one.said == "unexplained" || one.said == "cannot_tell";
+    return one.said == "unexplained" || one.said == "cannot_tell" || one.said == "not_identifiable";
 }
 
 }  // namespace
@@ -69,6 +69,8 @@ std::vector<Target> targets(const std::vector<Outcome>& cases) {
         {"nothing hidden: false alarms",
          counted(cases, is(Class::Null, 0), [](const Outcome& one) { return one.said != "no_effect"; }), 0,
          0.05, 0.08});
+    list.push_back({"errors of what went in: given a wrong name",
+                    counted(cases, is(Class::NoisyInput, 0), said("named")), 0, 0.05, 0.05});
     list.push_back({"known, strength 1 to 2: named first", counted(cases, band(1, 2), right), 0.9, 1});
     list.push_back(
         {"known, strength 4 and above: named first", counted(cases, band(4, 1e9), right), 0.97, 1});

@@ -117,6 +117,7 @@ void for_each_field(One& one, const Field& field) {
 
 /// What the targets hold against the analysis; weaker effects may be passed over.
 bool missed(const Outcome& one) {
+    if (one.of == Class::NoisyInput) return !rightly(one);
     if (one.of == Class::NearMiss) return one.wrong_family || said_of(one) == Said::Failed;
     return !rightly(one) && (one.of == Class::Null || one.ratio >= 1);
 }
@@ -189,7 +190,7 @@ std::vector<Outcome> outcomes_from_json(const std::string& text, const std::stri
     for (const auto& one : result.at("cases")) {
         Outcome out;
         out.number = one.at("number");
-        for (const Class of : {Class::Null, Class::Known, Class::NearMiss, Class::Unknown})
+        for (const Class of : {Class::Null, Class::Known, Class::NearMiss, Class::Unknown, Class::NoisyInput})
             if (one.at("class") == class_name(of)) out.of = of;
         for_each_field(out, [&](const char* name, auto& value) { one.at(name).get_to(value); });
         cases.push_back(std::move(out));

@@ -21,9 +21,12 @@ namespace gr = gap::selftest::grammar;
 
 std::optional<gr::Class> class_named(const std::string& name) {
     if (name.empty()) return std::nullopt;
-    for (const gr::Class of : {gr::Class::Unknown, gr::Class::NearMiss, gr::Class::Known, gr::Class::Null})
-        if (name == gr::class_name(of) || (name == "near-miss" && of == gr::Class::NearMiss)) return of;
-    throw InputError("", "--class", fmt::format("no class '{}'", name), "unknown, near-miss, known or null");
+    if (name == "near-miss") return gr::Class::NearMiss;
+    if (name == "noisy-input") return gr::Class::NoisyInput;
+    for (const gr::Class of : {gr::Class::Unknown, gr::Class::Known, gr::Class::Null})
+        if (name == gr::class_name(of)) return of;
+    throw InputError("", "--class", fmt::format("no class '{}'", name),
+                     "unknown, near-miss, known, null or noisy-input");
 }
 
 }  // namespace

@@ -163,8 +163,11 @@ void declare_gap_selftest(Command& gap, int& status) {
                       "cases drawn at random from a grammar of effects: unknown ones, near misses, known "
                       "ones, nothing; with a fresh seed, which is reported, unless --seed is given");
     command->add_flag("--full", request->full, "of --grammar: 1120 cases, 280 of each class (hours)");
-    command->add_option("--class", request->of, "of --grammar: only these of its cases")
-        ->type_name("unknown|near-miss|known|null");
+    command
+        ->add_option("--class", request->of,
+                     "of --grammar: only these of its cases; noisy-input: nothing hidden, but what went in "
+                     "was noted with errors")
+        ->type_name("unknown|near-miss|known|null|noisy-input");
     command
         ->add_option("--pool", request->pool,
                      "of --grammar: count the cases of this --json result of an earlier run, in place of new "

@@ -355,3 +355,85 @@ TEST_CASE("a truth that nobody measured is said, and only truth can be assumed")
     made.toml = "assumed = [\"distanz\"]\n";
     CHECK_THAT(refusal(made), Contains("no truth"));
 }
+
+namespace {
+
+/// Counters in place of steps, by `of_steps` of each; `line` states their unit.
+Made logged_as(const char* unit, const char* column, double of_step) {
+    Made made = clean("motion");
+    made.toml = fmt::format("[columns]\n{0}_left = \"{1}\"\n{0}_right = \"{1}\"\n", column, unit);
+    for (const char* side : {"_left", "_right"})
+        made = scaled(made, std::string(column) + side, of_step);
+    return made;
+}
+
+std::vector<double> read_column(const Made& made, const char* column) {
+    const Folder folder(made);
+    return read_experiment(folder.path()).runs.front().column(column);
+}
+
+}  // namespace
+
+TEST_CASE("wheels may be logged in metres, angles and speeds") {
+    const double metre = 2 * std::numbers::pi * 0.0205 / 1000, angle = 2 * std::numbers::pi / 1000;
+    const std::vector<double> steps = read_column(clean("motion"), "steps_left"),
+                              commands = read_column(clean("motion"), "cmd_right");
+    const auto same = [](const std::vector<double>& one, const std::vector<double>& other) {
+        REQUIRE(one.size() == other.size());
+        for (std::size_t i = 0; i < one.size(); ++i)
+            CHECK(one[i] == Approx(other[i]).margin(1e-3));
+    };
+    same(read_column(logged_as("m", "steps", metre), "steps_left"), steps);
+    same(read_column(logged_as("mm", "steps", 1000 * metre), "steps_left"), steps);
+    same(read_column(logged_as("rad", "steps", angle), "steps_left"), steps);
+    same(read_column(logged_as("m/s", "cmd", metre), "cmd_right"), commands);
+    same(read_column(logged_as("rad/s", "cmd", angle), "cmd_right"), commands);
+    CHECK_THAT(refusal(logged_as("kg", "steps", 1)),
+               Contains("steps_left cannot be in \"kg\"") && Contains("m, cm, mm"));
+    CHECK_THAT(refusal(logged_as("m", "cmd", 1)), Contains("cannot be in \"m\"") && Contains("m/s"));
+}
+
+TEST_CASE("a counter that is a speed is summed over time") {
+    Made made = clean("motion");
+    made.toml = "[columns]\nsteps_left = \"mm/s\"\nsteps_right = \"mm/s\"\n";
+    const double metre = 2 * std::numbers::pi * 0.0205 / 1000;
+    const std::size_t command = place_of(made, "cmd_left");
+    for (const char* side : {"left", "right"})
+        made = changed(made, std::string("steps_") + side, [&](std::size_t i, double) {
+            const std::string& asked = made.rows[i][command + (std::string_view(side) == "left" ? 0 : 1)];
+            return fmt::format("{:.9g}", std::stod(asked) * metre * 1000);
+        });
+    const std::vector<double> steps = read_column(clean("motion"), "steps_right"),
+                              summed = read_column(made, "steps_right");
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        CHECK(summed[i] == Approx(steps[i]).margin(25));  // half a row at each change of speed
+}
+
+TEST_CASE("a robot that is carried is reported with its rows") {
+    const Made whole = clean("motion");
+    const auto carried = [&](std::size_t from, double far) {
+        return changed(whole, "x_m", [&](std::size_t i, double x) {
+            return fmt::format("{:.7g}", i >= from ? x + far : x);
+        });
+    };
+    CHECK_THAT(cautions_of(whole), !Contains("without its wheels"));
+    CHECK_THAT(cautions_of(carried(30, 0.01)), !Contains("without its wheels"));
+    CHECK_THAT(cautions_of(carried(30, 0.3)),
+               Contains("run0.csv: the robot went without its wheels 1 time: into row 31 by 0.3"));
+    // Slowly, while the wheels stand.
+    Made slow = whole;
+    const std::size_t x = place_of(slow, "x_m"), y = place_of(slow, "y_m"),
+                      theta = place_of(slow, "theta_rad"), left = place_of(slow, "steps_left"),
+                      right = place_of(slow, "steps_right");
+    for (std::size_t i = 50; i < slow.rows.size(); ++i) {
+        for (const std::size_t column : {left, right, y, theta})
+            slow.rows[i][column] = slow.rows[49][column];
+        slow.rows[i][x] =
+            fmt::format("{:.7g}", std::stod(slow.rows[49][x]) + 0.01 * static_cast<double>(i - 49));
+        for (const char* command : {"cmd_left", "cmd_right"})
+            slow.rows[i][place_of(slow, command)] = "0";
+    }
+    for (const char* command : {"cmd_left", "cmd_right"})
+        slow.rows[49][place_of(slow, command)] = "0";
+    CHECK_THAT(cautions_of(slow), Contains("rows 50 to 80 by 0.3 m"));
+}

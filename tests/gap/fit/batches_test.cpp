@@ -4,6 +4,7 @@
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
 #include "gap/fit/study.h"
+#include "gap/identify/robot_clock.h"
 #include "tests/gap/candidate.h"
 
 #include <catch2/catch.hpp>
@@ -163,4 +164,32 @@ TEST_CASE("a clock that is read early or late is no batch, nor is what arrivals 
     }
     const auto names = found_in(experiment).names;
     CHECK(std::ranges::find(names, "batching") == names.end());
+}
+
+namespace {
+
+/// Frames each 100 ms, give or take `jitter`; the robot's clock errs by `clock` in each.
+Experiment clocked(double jitter, double clock, double step) {
+    RandomStream random(7, "clocked frames");
+    Experiment experiment;
+    experiment.kind = Kind::Timing;
+    Run& run = experiment.runs.emplace_back();
+    for (int i = 0; i < 400; ++i) {
+        const double made = 0.1 * i + jitter * random.normal(), noted = made + clock * random.normal();
+        run.columns["seq"].push_back(i);
+        run.columns["t_robot_s"].push_back(step > 0 ? std::round(noted / step) * step : noted);
+        run.columns["t_host_s"].push_back(made + 0.01 + 5e-4 * random.normal());
+        ++run.rows;
+    }
+    return experiment;
+}
+
+}  // namespace
+
+TEST_CASE("a robot's clock that errs is known by arrivals that do not follow it") {
+    CHECK(following(clocked(1e-4, 1e-3, 0)).errs());
+    CHECK_FALSE(following(clocked(1e-3, 1e-5, 0)).errs());
+    CHECK(following(clocked(1e-3, 1e-5, 0)).slope == Approx(1.0).margin(0.1));
+    CHECK_FALSE(following(clocked(1e-4, 0, 1e-3)).errs());  // whole milliseconds
+    CHECK_FALSE(following(clocked(1e-9, 0, 0)).errs());     // even
 }
