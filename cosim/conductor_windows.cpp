@@ -26,6 +26,10 @@ void Conductor::State::loop_in_windows() {
         if (windows_.complete()) return;
         if (windows_.chosen().empty()) return leave_windows();
         window();
+        if (writing_) {  // perhaps no longer
+            done_.clear();
+            take_done();
+        }
         if (merger_.full()) release_trace_beside(std::min(floor(), end_));
         report_progress();
     }

@@ -32,10 +32,11 @@ struct FullDisk : Recorder {
     }
 };
 
-Run long_run(std::uint64_t seed, unsigned threads) {
+Run long_run(std::uint64_t seed, unsigned threads, bool windows = false) {
     Run run = toy::random_chatter(seed, 6);
     run.options.duration = 150 * kMillisecond;
     run.options.threads = threads;
+    run.options.windows = windows;
     for (NodeSpec& node : run.nodes)
         node.any_thread = true;
     return run;
@@ -50,9 +51,10 @@ TEST_CASE("helpers write the same trace") {
         const Outcome expected = long_run(seed, 1)(&alone);
         REQUIRE(expected.reason == EndReason::Duration);
         CHECK(alone.beside == 0);
-        for (const unsigned threads : {2u, 4u}) {
+        for (const auto& [threads, windows] :
+             {std::pair(2u, false), std::pair(4u, false), std::pair(2u, true), std::pair(4u, true)}) {
             FullDisk recorder;
-            const Outcome outcome = long_run(seed, threads)(&recorder);
+            const Outcome outcome = long_run(seed, threads, windows)(&recorder);
             CHECK(outcome.trace_sha256 == expected.trace_sha256);
             REQUIRE((recorder.records == alone.records));
             beside += recorder.beside;
@@ -61,15 +63,29 @@ TEST_CASE("helpers write the same trace") {
     CHECK(beside > 0);
 }
 
+TEST_CASE("in windows helpers write all along, with nodes for them or without") {
+    for (const bool any_thread : {false, true}) {
+        Run run = long_run(3, 2, true);
+        for (NodeSpec& node : run.nodes)
+            node.any_thread = any_thread;
+        FullDisk recorder;
+        run(&recorder);
+        REQUIRE(recorder.records.size() > 2000);
+        INFO(recorder.beside << " of " << recorder.records.size());
+        CHECK(recorder.beside > recorder.records.size() / 2);
+    }
+}
+
 TEST_CASE("what a sink cannot take ends the run, whichever thread it is") {
     FullDisk all;
     long_run(3, 1)(&all);
     REQUIRE(all.records.size() > 2000);
-    for (const unsigned threads : {1u, 2u, 4u})
+    for (const auto& [threads, windows] : {std::pair(1u, false), std::pair(2u, false), std::pair(4u, false),
+                                           std::pair(1u, true), std::pair(2u, true), std::pair(4u, true)})
         for (const std::size_t room : {std::size_t{0}, std::size_t{700}, all.records.size() - 1}) {
             FullDisk disk;
             disk.room = room;
-            const Outcome outcome = long_run(3, threads)(&disk);
+            const Outcome outcome = long_run(3, threads, windows)(&disk);
             INFO(threads << " threads, room for " << room << ": " << outcome.text);
             CHECK(outcome.reason == EndReason::Failed);
             CHECK(outcome.text == "the disk is full");
