@@ -9,8 +9,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
 namespace puckloop::image {
 
@@ -34,9 +35,10 @@ std::string read_image_file(const std::string& path) {
         throw InputError(path, "", fmt::format("is {} bytes large", size), "an image of at most 64 MB");
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw InputError(path, "", fmt::format("cannot be opened: {}", std::strerror(errno)));
-    std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (stream.bad()) throw InputError(path, "", "cannot be read");
-    return bytes;
+    std::ostringstream bytes;
+    bytes << stream.rdbuf();  // fails where there is nothing
+    if (stream.bad() || bytes.bad()) throw InputError(path, "", "cannot be read");
+    return std::move(bytes).str();
 }
 
 bool looks_like_hex(std::string_view bytes) {

@@ -11,7 +11,38 @@
 #include "emu/image/image_file.h"
 #include "emu/image/intel_hex.h"
 
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <utility>
+
 namespace puckloop::image {
+
+namespace {
+
+/// What this process parsed last, by content: twenty boards of a run load one file several times each, and
+/// to parse it takes ten times as long as to read and hash it.
+class Parsed {
+  public:
+    std::shared_ptr<const Image> find(const std::string& sha256) {
+        const std::lock_guard lock(mutex_);
+        for (const auto& image : images_)
+            if (image->sha256 == sha256) return image;
+        return nullptr;
+    }
+    void keep(std::shared_ptr<const Image> image) {
+        const std::lock_guard lock(mutex_);
+        images_.push_back(std::move(image));
+        if (images_.size() > kMost) images_.pop_front();
+    }
+
+  private:
+    static constexpr std::size_t kMost = 8;
+    std::mutex mutex_;
+    std::deque<std::shared_ptr<const Image>> images_;
+};
+
+}  // namespace
 
 const char* name_of(Format format) {
     switch (format) {
@@ -63,7 +94,12 @@ Image parse_image(std::string_view bytes, const std::string& file) {
 }
 
 Image load_image(const std::string& path) {
-    Image image = parse_image(read_image_file(path), path);
+    static Parsed parsed;
+    const std::string bytes = read_image_file(path);
+    auto known = parsed.find(sha256_text(bytes));
+    if (!known) parsed.keep(known = std::make_shared<const Image>(parse_image(bytes, path)));
+    Image image = *known;
+    image.file = path;
     log::info("read {}: {}, {} program words, {} symbols, sha256 {}", path, name_of(image.format),
               image.program.size(), image.symbols.size(), image.sha256);
     return image;
