@@ -47,16 +47,44 @@ double gain_of_row(const Model& model, const std::vector<double>& values, bool t
     return scale / (value("robot.axle_length") * (1 + scrub));
 }
 
-/// What errs, in words, by what the fit loses without it.
-std::string what_errs(const CountedDrive& drive, const DriveFit& all) {
-    const double no_counters = fit_drive(drive, {.counters = false, .slip = true}, all.share).cost - all.cost,
-                 no_slip = fit_drive(drive, {.counters = true, .slip = false}, all.share).cost - all.cost;
-    const std::string counters = fmt::format("counters that err by {:.2g} mm a row", all.counter_sd * 1e3),
-                      slip = fmt::format("turns that stray by {:.2g} mrad a row", all.slip_turn * 1e3);
-    if (no_counters > kClearGain && no_slip > kClearGain) return counters + " and " + slip;
-    if (no_counters > kClearGain) return counters;
-    if (no_slip > kClearGain) return slip;
-    return "counters that err, or wheels that slip (these drives cannot part the two)";
+constexpr DriveNoise kSlipOnly{.counters = false, .slip = true},
+    kCountersOnly{.counters = true, .slip = false};
+
+double share_tolerance(const DriveFit& fit) {
+    return std::max(thresholds::kShareLeft, 2 * fit.share_sd);
+}
+
+/// Does a drive show a cause, and by the number that was fitted? `needed`: nats.
+struct Shown {
+    double gained;
+    bool same;
+    bool enough(double needed) const { return gained >= needed && same; }
+};
+Shown shown_by(const CountedDrive& drive, const DriveNoise& noise, const DriveFit& free) {
+    // One number more was fitted (Akaike 1974); the sets it was chosen from are the criterion's.
+    return {fit_drive(drive, noise, 0.0).cost - free.cost - 1,
+            std::abs(free.share - 1) <= share_tolerance(free)};
+}
+
+/// Why a drive does not show a cause beside counters that err, though it does beside counters that do not.
+std::string hidden_by_counters(const CountedDrive& drive, double needed) {
+    const DriveFit free = fit_drive(drive, {});
+    const Shown beside = shown_by(drive, {}, free);
+    if (beside.enough(needed)) return "";
+    const DriveFit sure = fit_drive(drive, kSlipOnly);
+    const bool err = sure.cost - free.cost > kClearGain;
+    if (!err && fit_drive(drive, kCountersOnly).cost - free.cost > kClearGain)
+        return "";  // wheels slip, and counters show no errors
+    // What these two sums do not show without errors either is seen elsewhere, across the heading.
+    if (!shown_by(drive, kSlipOnly, sure).enough(needed)) return "";
+    const std::string errs =
+        err ? fmt::format("counters that err by {:.2g} mm a row", free.counter_sd * 1e3)
+            : "counters that err, or wheels that slip (these drives cannot part the two),";
+    if (beside.gained < needed)
+        return fmt::format("it gains no more than chance beside {}: not identifiable by these drives", errs);
+    return fmt::format("beside {} it would be {:.0f} +- {:.0f} % of what fits best without: not "
+                       "identifiable by these drives",
+                       errs, 100 * free.share, 100 * free.share_sd);
 }
 
 }  // namespace
@@ -105,19 +133,7 @@ NotIdentified not_by_counts(const Study& study, const Fit& fit) {
         tried += candidate.remark.empty() ? 1 : 0;
     const auto doubt = [&](std::span<const std::size_t> effects) -> std::string {
         const CountedDrive drive = drive_of(study, fit, effects);
-        if (drive.starts.empty()) return "";
-        const DriveFit free = fit_drive(drive, {});
-        // One number more was fitted (Akaike 1974); the sets it was chosen from are the criterion's.
-        const double gained = fit_drive(drive, {}, 0.0).cost - free.cost - 1;
-        if (gained < needed_gain(tried, effects.size()))
-            return fmt::format("it gains no more than chance beside {}: not identifiable by these drives",
-                               what_errs(drive, free));
-        const double off = std::abs(free.share - 1),
-                     most = std::max(thresholds::kShareLeft, 2 * free.share_sd);
-        if (off <= most) return "";
-        return fmt::format("beside {} it would be {:.0f} +- {:.0f} % of what fits best without: not "
-                           "identifiable by these drives",
-                           what_errs(drive, free), 100 * free.share, 100 * free.share_sd);
+        return drive.starts.empty() ? "" : hidden_by_counters(drive, needed_gain(tried, effects.size()));
     };
     if (std::string why = doubt(through); !why.empty()) return {through, std::move(why)};
     if (through.size() < 2) return {};
