@@ -75,7 +75,8 @@ void Conductor::State::window() {
 void Conductor::State::share_window() {
     next_share_.store(0, std::memory_order_relaxed);
     std::size_t open = 0;
-    if (shares_.size() >= kWorthSharingNodes && workers_->available())
+    // A batch of the trace that no helper has begun goes first.
+    if (shares_.size() >= kWorthSharingNodes && workers_->waiting() == 0 && workers_->available())
         for (; open < workers_->helpers(); ++open)
             workers_->submit(share_piece() + open, true);
     advance_shares();

@@ -13,6 +13,8 @@ namespace puckloop::gap {
 
 namespace {
 
+constexpr double kEnd = 0.01;  // of a range: its upper end
+
 double cost_with(const Study& study, const State& state) {
     return cost_of(study.model(), state, study.model().predicted(state.values));
 }
@@ -37,6 +39,8 @@ std::string why_unknown(const Study& study, const Fit& fit, const Precision& pre
                            parameter.name, quantity(value, parameter.unit),
                            quantity(neutral, parameter.unit));
     if (precision.sd[j] <= thresholds::kNarrower * freed.prior_sd) return "";
+    // At the end of its range, as a loss of all messages is, there is no curve to judge by.
+    if (value >= freed.high - kEnd * (freed.high - freed.low)) return "";
     return fmt::format("{} is known to +- {} only, no better than it was believed before (+- {}): not "
                        "identifiable by these data",
                        parameter.name, quantity(precision.sd[j], parameter.unit),

@@ -22,6 +22,7 @@ constexpr double kFastestWheel = 5.0;       // m/s
 constexpr double kFactor = 5.0;             // between what two columns say of one thing
 constexpr double kWay = 0.05, kTurn = 0.5;  // m, rad: beyond a tracker's noise; what a marker's swing adds
 constexpr double kClear = 0.5;              // correlation of columns that go together
+constexpr double kSameWay = 0.9;            // share of the turns by wheels in which the heading goes along
 constexpr double kSideways = 0.6;           // share of a straight step that must lie along the heading
 
 struct Path {
@@ -378,8 +379,9 @@ void check_motion(Experiment& experiment) {
         if (run.has("steps_left")) {
             Pairs of_run;
             add_turns(experiment, run, of_run);
-            // Counters that err turn the robot by their errors: no unit.
-            const bool together = !std::isnan(of_run.factor(kClear));
+            // Counters that err turn the robot by their errors: no unit. A heading that was scaled with its
+            // wraps hardly correlates, but turns the way the wheels do.
+            const bool together = !std::isnan(of_run.factor(kClear)) || of_run.agreement() > kSameWay;
             check_heading(experiment, run, std::abs(of_run.ratio()), together);
             check_direction(experiment, run);
         }

@@ -249,6 +249,16 @@ double Pairs::ratio() const {
     return wide ? NAN : std::copysign(std::exp(stats::median(logs)), 2 * same - n);
 }
 
+double Pairs::agreement() const {
+    double same = 0, all = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        if (seen[i] != 0 && expected[i] != 0) {
+            same += seen[i] * expected[i] > 0 ? 1 : 0;
+            ++all;
+        }
+    return all == 0 ? 0.0 : std::max(same, all - same) / all;
+}
+
 Pairs Pairs::part(bool large) const {
     const double end = stats::quantile(seen, large ? 0.6 : 0.4);
     Pairs some;

@@ -27,6 +27,9 @@ struct Pairs {
     /// How many times as large one is as the other in the middle row, zeros left out; NaN where they hardly
     /// go together.
     double ratio() const;
+    /// Share of the rows, zeros left out, in which both go the same way, or in which they do not if that is
+    /// more: 0.5 to 1; 0 without rows.
+    double agreement() const;
     /// Only those with the largest of what is seen, or only with the smallest.
     Pairs part(bool large) const;
 };
