@@ -35,11 +35,7 @@ void Conductor::State::fill_inbox(std::size_t n, Time until) {
         std::sort(slot.taken.begin(), slot.taken.end(),
                   [](const TraceRecord& a, const TraceRecord& b) { return after(b, a); });
     } else {
-        while (!slot.queue.empty() && slot.queue.front().time < until) {
-            slot.taken.push_back(slot.queue.front());
-            std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
-            slot.queue.pop_back();
-        }
+        slot.take_before(until, [&](const TraceRecord& record) { slot.taken.push_back(record); });
     }
     for (const TraceRecord& record : slot.taken)
         slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});

@@ -15,6 +15,7 @@
 #include "cosim/trace/trace_hash.h"
 #include "cosim/trace/trace_merger.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -69,6 +70,15 @@ class Conductor::State {
         bool wound_up = false;
         double pace = 0.0;  ///< wall ns that a simulated ps takes it, about
 
+        /// Takes what is queued before `until` off, in the order of the trace.
+        template <class Take>
+        void take_before(Time until, Take take) {
+            while (!queue.empty() && queue.front().time < until) {
+                take(queue.front());
+                std::pop_heap(queue.begin(), queue.end(), after);
+                queue.pop_back();
+            }
+        }
         double expected_ns() const { return pace * static_cast<double>(span); }
         void worked(double ns) {
             if (span > 0) pace += (ns / static_cast<double>(span) - pace) / kPaceMemory;

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <exception>
-#include <utility>
+#include <vector>
 
 namespace puckloop::cosim {
 
@@ -50,7 +50,7 @@ void Conductor::State::leave_windows() {
 
 void Conductor::State::window() {
     shares_.clear();
-    const auto steps = windows_.chosen();
+    const std::vector<Windows::Step>& steps = windows_.chosen();
     // Programs compute in processes of their own meanwhile.
     for (const auto& [n, to] : steps) {
         Time until = to, ahead = to;
@@ -109,12 +109,9 @@ void Conductor::State::advance_shares() {
 bool Conductor::State::advance_in_window(std::size_t n) {
     Slot& slot = slots_[n];
     slot.inbox.clear();
-    while (!slot.queue.empty() && slot.queue.front().time < slot.asked) {
-        const TraceRecord& record = slot.queue.front();
+    slot.take_before(slot.asked, [&](const TraceRecord& record) {
         slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
-        std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
-        slot.queue.pop_back();
-    }
+    });
     return handles_[n]->advance(slot.asked, slot.inbox);
 }
 
@@ -123,7 +120,7 @@ void Conductor::State::resume_in_window() {
     for (int looks = 0; !suspended_.empty(); ++looks) {
         done_.clear();
         resume(suspended_.size() == 1 || looks >= kLooksAtSeveral);
-        for (const std::size_t n : std::exchange(done_, {}))
+        for (const std::size_t n : done_)
             take_window(n);
     }
 }
@@ -135,19 +132,10 @@ void Conductor::State::take_window(std::size_t n) {
     const Time before = times_[n].granted;
     const Time reached = handles_[n]->advanced().reached;
     network_->take_final(n, handles_[n]->outbox(), reached,
-                         slot.inbox.empty() ? kNever : slot.inbox.front().time, deliveries_);
+                         slot.inbox.empty() ? kNever : slot.inbox.front().time, deliveries_, changes_);
     windows_.update(n, network_->channels());
     times_[n].granted = times_[n].ahead = reached;
-    for (const TraceRecord& record : deliveries_) {
-        merger_.add(record);
-        if (lost(record)) continue;
-        const std::size_t to = network_->wire(record).to;
-        Slot& receiver = slots_[to];
-        if (record.time < receiver.asked) too_late(n, to, record.time);
-        receiver.queue.push_back(record);
-        std::push_heap(receiver.queue.begin(), receiver.queue.end(), after);
-    }
-    deliveries_.clear();
+    take_deliveries(n);
     take_stop(n, before);
     take_wound_up(n, before);
 }

@@ -58,21 +58,10 @@ void Bounds::compute(const std::vector<Channel>& channels, const std::vector<Tim
     }
 }
 
-/// Nodes by their earliest time, which is much the same order each time.
-void Bounds::sort_nodes() {
-    for (std::size_t i = 1; i < order_.size(); ++i) {
-        const std::size_t n = order_[i];
-        std::size_t place = i;
-        for (; place > 0 && earliest_[order_[place - 1]] > earliest_[n]; --place)
-            order_[place] = order_[place - 1];
-        order_[place] = n;
-    }
-}
-
 /// Shortest paths from the EOTs and what is pending: a node whose earliest time fell informs those behind it.
 /// Begun with the earliest, hardly a node comes twice.
 void Bounds::relax() {
-    sort_nodes();
+    sort_again(order_, earliest_);
     last_relaxed_.assign(earliest_.size(), kNever);
     answers_.assign(channels_->size(), kNever);
     for (bool changed = true; changed;) {

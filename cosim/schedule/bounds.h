@@ -77,7 +77,6 @@ class Bounds {
 
   private:
     void build_adjacency(std::size_t nodes);
-    void sort_nodes();
     void relax();
 
     const std::vector<Channel>* channels_ = nullptr;
@@ -93,6 +92,18 @@ class Bounds {
     std::vector<Time> last_relaxed_;  ///< what the channels that leave a node were relaxed with
     std::vector<Time> answers_;       ///< of each channel to that
 };
+
+/// Puts nodes in the order of `times`, which is much the same each time.
+template <class Node>
+void sort_again(std::vector<Node>& order, const std::vector<Time>& times) {
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        const Node n = order[i];
+        std::size_t place = i;
+        for (; place > 0 && times[order[place - 1]] > times[n]; --place)
+            order[place] = order[place - 1];
+        order[place] = n;
+    }
+}
 
 /// For each node the shortest time from a message that reaches it to one, caused by it, that reaches
 /// `target`; 0 for the target itself, kNever where there is no way.

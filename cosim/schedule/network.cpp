@@ -127,23 +127,33 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
         const PortState& port = state.ports[p];
         Channel& channel = channels_[port_wire_[n][p]];
         Sent& sent = sent_[p];
-        // A frame begins at the EOT or later; what an incoming message causes begins after it.
-        const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
-        const Time previous_bound =
-            std::min({wire.base, later(first_in, channel.lookahead), sent.first_change});
-        const Time base =
-            std::max(previous_bound, later(std::max(port.earliest_output, begun), wire.latency));
+        const Time claimed = std::min({wire.base, later(first_in, channel.lookahead), sent.first_change});
+        const Time base = future(wire, port, reached, claimed);
         update_arrival_confidence(channel, base, sent);
         if (state.runs_ahead && !state.bounded) channel.punctual = 0;
         wire.base = base;
         update_channel(port_wire_[n][p]);
-        const Time lookahead = later(std::max(port.lookahead, wire.flight), wire.latency);
-        if (lookahead != channel.lookahead) ++lookaheads_;
-        channel.lookahead = lookahead;
-        channel.instant = port.lookahead == 0;
-        update_loop(port_wire_[n][p]);
+        update_lookahead(port_wire_[n][p], port);
         sent = {std::move(sent.messages)};
     }
+}
+
+/// The earliest delivery of what a sender that has reached `reached` is to send by itself, if it said
+/// `claimed` before.
+Time Network::future(const Wire& wire, const PortState& port, Time reached, Time claimed) {
+    // A frame begins at the EOT or later; what an incoming message causes begins after it.
+    const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
+    return std::max(claimed, later(std::max(port.earliest_output, begun), wire.latency));
+}
+
+void Network::update_lookahead(std::size_t w, const PortState& port) {
+    const Wire& wire = wires_[w];
+    Channel& channel = channels_[w];
+    const Time lookahead = later(std::max(port.lookahead, wire.flight), wire.latency);
+    if (lookahead != channel.lookahead) ++lookaheads_;
+    channel.lookahead = lookahead;
+    channel.instant = port.lookahead == 0;
+    update_loop(w);
 }
 
 /// Whether something came when the EOT fell due: `base` is the next one.

@@ -77,7 +77,7 @@ class Network {
                    std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
     /// take_sent() and update() in one, for a node that has not run ahead since: everything it sent is final.
     void take_final(std::size_t n, const std::vector<Message>& outbox, Time reached, Time first_in,
-                    std::vector<TraceRecord>& deliveries);
+                    std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
     /// Delivers what is foreseen and cannot change any more.
     void settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
     /// The first instant after everything that is final although its sender may still go back before it.
@@ -147,6 +147,9 @@ class Network {
     std::size_t first_difference(const Wire& wire, const Sent& sent) const;
     void send(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
               std::vector<Change>& changes);
+    void check_port(std::size_t n, PortIndex port) const;
+    static Time future(const Wire& wire, const PortState& port, Time reached, Time claimed);
+    void update_lookahead(std::size_t w, const PortState& port);
     void update_channel(std::size_t w);
     void update_loop(std::size_t w);
     void update_arrival_confidence(Channel& channel, Time base, const Sent& sent) const;
@@ -171,7 +174,6 @@ class Network {
     std::vector<std::vector<std::size_t>> into_;  ///< node -> wires that end there
     std::vector<Sent> sent_;                      ///< by port
     std::vector<Delivery> batch_;
-    std::vector<Change> changes_;
     std::uint64_t unlinked_ = 0;
 };
 

@@ -28,6 +28,12 @@ void Network::check_earliest_output(const Wire& wire, Time stamp, Time delivery,
         port.begun ? "begun at " + seconds(*port.begun) : "none"));
 }
 
+void Network::check_port(std::size_t n, PortIndex port) const {
+    if (port >= port_wire_[n].size())
+        throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
+                                   nodes_[n]->name(), port));
+}
+
 void Network::take_sent(std::size_t n, const std::vector<Message>& outbox, const Advanced& done,
                         Time first_in, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
     const std::size_t ports = port_wire_[n].size();
@@ -38,9 +44,7 @@ void Network::take_sent(std::size_t n, const std::vector<Message>& outbox, const
     }
     for (std::size_t i = 0; i < outbox.size(); ++i) {
         const PortIndex port = outbox[i].port;
-        if (port >= ports)
-            throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
-                                       nodes_[n]->name(), port));
+        check_port(n, port);
         sent_[port].messages.push_back(outbox[i]);
         if (i < done.sure) ++sent_[port].sure;
     }
@@ -54,12 +58,10 @@ void Network::take_sent(std::size_t n, const std::vector<Message>& outbox, const
 }
 
 void Network::take_final(std::size_t n, const std::vector<Message>& outbox, Time reached, Time first_in,
-                         std::vector<TraceRecord>& deliveries) {
+                         std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
     const std::vector<std::size_t>& wires = port_wire_[n];
     for (const Message& message : outbox) {
-        if (message.port >= wires.size())
-            throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
-                                       nodes_[n]->name(), message.port));
+        check_port(n, message.port);
         const std::size_t w = wires[message.port];
         if (w == kNobody) {
             if (nodes_[n]->ports()[message.port].kind != PortKind::Uart) ++unlinked_;
@@ -73,23 +75,17 @@ void Network::take_final(std::size_t n, const std::vector<Message>& outbox, Time
             deliveries.push_back(
                 {time, wire.link, wire.direction, wire.sequence++, FaultKind::None, message.payload});
         } else {
-            pass_on(wire, {time, wire.to_port, message.payload}, deliveries, changes_);
+            pass_on(wire, {time, wire.to_port, message.payload}, deliveries, changes);
         }
     }
-    changes_.clear();
     const NodeState& state = nodes_[n]->state();
     for (std::size_t p = 0; p < wires.size(); ++p) {
         if (wires[p] == kNobody) continue;
         Wire& wire = wires_[wires[p]];
-        const PortState& port = state.ports[p];
         Channel& channel = channels_[wires[p]];
-        const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
-        wire.base = std::max(std::min(wire.base, later(first_in, channel.lookahead)),
-                             later(std::max(port.earliest_output, begun), wire.latency));
-        channel.base = wire.base;
-        channel.lookahead = later(std::max(port.lookahead, wire.flight), wire.latency);
-        channel.instant = port.lookahead == 0;
-        update_loop(wires[p]);
+        const Time claimed = std::min(wire.base, later(first_in, channel.lookahead));
+        channel.base = wire.base = future(wire, state.ports[p], reached, claimed);
+        update_lookahead(wires[p], state.ports[p]);
     }
 }
 

@@ -45,9 +45,7 @@ void Windows::plan(const std::vector<Time>& pending, const std::vector<NodeTimes
     chosen_.clear();
     find_earliest(pending);
     find_limits();
-    if (complete_) return;
-    const Time ceiling = std::min(later(reached_, limits.stop_latency), limits.end);
-    choose(pending, nodes, limits.end, ceiling, limits.stop_latency / kStretchDivisor);
+    if (!complete_) choose(pending, nodes, limits);
 }
 
 /// The first instant at which something reaches each node: from EOTs and what is pending along the shortest
@@ -56,13 +54,7 @@ void Windows::find_earliest(const std::vector<Time>& pending) {
     earliest_ = pending;
     for (const Edge& edge : edges_)
         earliest_[edge.to] = std::min(earliest_[edge.to], edge.base);
-    for (std::size_t i = 1; i < order_.size(); ++i) {
-        const std::uint32_t n = order_[i];
-        std::size_t place = i;
-        for (; place > 0 && earliest_[order_[place - 1]] > earliest_[n]; --place)
-            order_[place] = order_[place - 1];
-        order_[place] = n;
-    }
+    sort_again(order_, earliest_);
     relaxed_.assign(earliest_.size(), kNever);
     for (bool changed = true; changed;) {
         changed = false;
@@ -94,9 +86,10 @@ void Windows::find_limits() {
         }
 }
 
-void Windows::choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes, Time end,
-                     Time ceiling, Time stretch) {
-    const Time window = later(reached_, kStretchDivisor * stretch);
+void Windows::choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
+                     const ScheduleLimits& limits) {
+    const Time end = limits.end, window = later(reached_, limits.stop_latency),
+               ceiling = std::min(window, end), stretch = limits.stop_latency / kStretchDivisor;
     bool last_holds_up = false;
     // When others may see something of each next; and how far the first one may go: whatever happens within
     // that time happens beside it.

@@ -49,8 +49,8 @@ class Windows {
 
     void find_earliest(const std::vector<Time>& pending);
     void find_limits();
-    void choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes, Time end, Time ceiling,
-                Time stretch);
+    void choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
+                const ScheduleLimits& limits);
 
     std::vector<Edge> edges_;             ///< by sender
     std::vector<std::size_t> first_;      ///< of each sender's edges; one more at the end

@@ -16,7 +16,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kRowTail = 6.0;       // degrees of freedom by which rows far out pull
-constexpr double kSpeedJump = 6.0;     // robust deviations of a counted speed's change that begin it anew
+constexpr double kSpeedJump = 6.0;     // robust deviations of a counted speed's change that begin it again
 constexpr double kUnknownSpeed = 1e4;  // of the fastest speed's square: nothing is known of a speed
 constexpr double kPriorWidth = 4.0;    // of ln of a noise about its first guess
 constexpr double kSlopeStep = 1e-4, kCurvatureStep = 1e-2;

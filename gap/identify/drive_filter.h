@@ -6,7 +6,7 @@
 // to nothing by the counts' own noise (errors in variables: Fuller 1987).
 //
 // Two channels, the way and the turn, each with three states: the pose, the counters' sum, the wheels' speed,
-// which is a random walk that begins anew where a counted speed jumps.
+// which is a random walk that begins again where a counted speed jumps.
 //
 // Deviations: 1. the way across the heading is left out. 2. What a cause does to a row is taken as linear in
 // the counts' error.

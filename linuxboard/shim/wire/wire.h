@@ -226,8 +226,6 @@ inline constexpr std::int32_t kNoParent = -1;
 /// Exit status of a program that cannot be conducted, as a shell's for one that cannot be executed.
 inline constexpr int kRefusedStatus = 126;
 
-/// One process of the program, by its slot. Everything is written by whoever runs: the process itself or the
-/// node.
 /// Of the newest signal of its number that the node sent to a process.
 struct SignalOrigin {
     std::int32_t process = 0;  ///< who sent it, or the child that ended; 0: nobody of the program
@@ -236,6 +234,8 @@ struct SignalOrigin {
 };
 inline constexpr std::uint32_t kSignals = 65;  ///< their numbers are below
 
+/// One process of the program, by its slot. Everything is written by whoever runs: the process itself or the
+/// node.
 struct ProcessEntry {
     enum State : std::uint32_t { Free, Alive, Ended };
     std::uint32_t state = Free;
