@@ -4,7 +4,7 @@
 #include "benchmark/processor_seconds.h"
 #include "benchmark/prompt_module.h"
 #include "benchmark/timed_run.h"
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 #include "emu/tam_avr/board.h"
 
 #include <fmt/format.h>

@@ -4,8 +4,8 @@
 #include "debug/debug_chip.h"
 #include "debug/register_fields.h"
 #include "emu/avr/assembler/disassembler.h"
-#include "emu/avr/chip.h"
-#include "emu/avr/chip_faults.h"
+#include "emu/avr/chip/chip.h"
+#include "emu/avr/chip/chip_faults.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "cosim/resume/resumed_node.h"
-#include "emu/avr/chip_faults.h"
-#include "emu/avr/device.h"
+#include "emu/avr/chip/chip_faults.h"
+#include "emu/avr/devices/device.h"
 #include "emu/dspic/chip/chip_faults.h"
 #include "emu/image/symbol_sizes.h"
 #include "emu/pic/pic_node.h"

@@ -27,6 +27,7 @@
 #include "run/plan/state_plan.h"
 #include "run/plan/stats_plan.h"
 #include "run/snapshots/snapshot_plan.h"
+#include "scenarios/reader/read_scenario.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "debug/debug_chip.h"
 
-#include "emu/avr/crash_text.h"
+#include "emu/avr/chip/crash_text.h"
 #include "emu/board/nvm_file.h"
 #include "emu/board/place_json.h"
 

@@ -3,7 +3,7 @@
 // uart1 and uart2.
 
 #include "bench/targets/target.h"
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 
 #include <array>
 #include <utility>

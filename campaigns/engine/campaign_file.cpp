@@ -1,7 +1,7 @@
 #include "campaigns/engine/campaign_file.h"
 
 #include "base/error.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/format.h>
 

@@ -9,6 +9,7 @@
 #include "run/run_scenario.h"
 #include "run/setup.h"
 #include "scenarios/reader/faults/fault_tables.h"
+#include "scenarios/reader/read_scenario.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

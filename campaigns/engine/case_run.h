@@ -5,7 +5,7 @@
 #include "campaigns/engine/case.h"
 #include "campaigns/engine/outcome.h"
 #include "campaigns/engine/prefixes.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <filesystem>
 #include <memory>

@@ -2,7 +2,7 @@
 // What the results of a campaign hang on.
 
 #include "campaigns/engine/campaign_file.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 namespace puckloop::faults {
 

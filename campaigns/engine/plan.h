@@ -3,7 +3,7 @@
 
 #include "campaigns/engine/case.h"
 #include "campaigns/engine/outcome.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <map>
 

@@ -1,7 +1,7 @@
 #include "campaigns/engine/positions.h"
 
 #include "protocols/epuck_fields.h"
-#include "scenarios/reader/quantity.h"
+#include "scenarios/values/quantity.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include "campaigns/engine/case.h"
 #include "cosim/core/time.h"
 #include "cosim/resume/run_snapshot.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <cstdint>
 #include <filesystem>

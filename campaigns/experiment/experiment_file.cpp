@@ -1,7 +1,7 @@
 #include "campaigns/experiment/experiment_file.h"
 
 #include "base/toml_file.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/format.h>
 

@@ -10,6 +10,7 @@
 #include "run/plan/overrides.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"
+#include "scenarios/reader/read_scenario.h"
 
 #include <fmt/format.h>
 

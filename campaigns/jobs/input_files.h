@@ -1,7 +1,7 @@
 #pragma once
 // The files that a run's results depend on, each with its hash.
 
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <nlohmann/json.hpp>
 

@@ -5,7 +5,7 @@
 // Deviations:
 // 1. One exponential with one time constant for emitter and receiver together, the same for rise and fall.
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <cmath>
 

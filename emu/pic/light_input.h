@@ -3,7 +3,7 @@
 //
 // Deviations: 1. The same time constant for rise and fall, however bright the light.
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <cmath>
 

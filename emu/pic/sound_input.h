@@ -2,7 +2,7 @@
 // The wave at a microphone as it is sent sample by sample: straight lines between samples kSoundPeriod apart,
 // one period late.
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 namespace puckloop::pic {
 

@@ -13,7 +13,7 @@
 //    (a real one snaps back by up to two steps).
 // 4. A jump of two phases moves nothing (on a robot either direction may win).
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <cstdint>
 

@@ -14,8 +14,8 @@
 
 #include "base/archive.h"
 #include "base/random.h"
-#include "emu/avr/chip.h"
-#include "emu/avr/pins.h"
+#include "emu/avr/chip/chip.h"
+#include "emu/avr/peripherals/pins.h"
 #include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/tam_avr/led_driver.h"

@@ -2,7 +2,7 @@
 // What a TAM's fuse bytes would do to it: a chip that was burnt otherwise than the project's boards runs, but
 // not as its firmware expects.
 
-#include "emu/avr/fuses.h"
+#include "emu/avr/devices/fuses.h"
 #include "emu/image/avr_image.h"
 
 #include <string>

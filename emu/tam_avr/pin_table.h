@@ -6,7 +6,7 @@
 // 1. XBEE_CTS (PD5) is an output of the radio module that the firmware drives low: the driver wins, nothing
 //    is damaged.
 
-#include "emu/avr/pins.h"
+#include "emu/avr/peripherals/pins.h"
 #include "emu/tam_avr/signals.h"
 
 #include <array>

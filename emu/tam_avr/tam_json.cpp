@@ -1,6 +1,6 @@
 #include "emu/tam_avr/tam_json.h"
 
-#include "emu/avr/crash_text.h"
+#include "emu/avr/chip/crash_text.h"
 #include "emu/board/place_json.h"
 
 #include <fmt/format.h>

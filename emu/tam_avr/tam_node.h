@@ -9,7 +9,7 @@
 //   ir       out: proximity_emit; in: proximity_sense
 
 #include "cosim/core/stateful_node.h"
-#include "emu/avr/chip_faults.h"
+#include "emu/avr/chip/chip_faults.h"
 #include "emu/board/node_state.h"
 #include "emu/chip/faults/board_faults.h"
 #include "emu/image/avr_image.h"

@@ -8,7 +8,7 @@
 #include "gap/data/wheel_units.h"
 #include "gap/sync/sync.h"
 #include "gap/validate/checks.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/ranges.h>
 

@@ -6,7 +6,7 @@
 #include "gap/overlay/overlay_parts.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/parameters.h"
-#include "scenarios/reader/world_tables.h"
+#include "scenarios/tables/world_tables.h"
 
 #include <fmt/format.h>
 

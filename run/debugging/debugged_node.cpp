@@ -1,6 +1,6 @@
 #include "run/debugging/debugged_node.h"
 
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 #include "emu/dspic/chip/chip.h"
 #include "run/debugging/board_debugger.h"
 

@@ -3,7 +3,7 @@
 
 #include "cosim/conductor.h"
 #include "run/description/node_description.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <filesystem>
 #include <optional>

@@ -10,7 +10,7 @@
 #include "run/factory/node_factory.h"
 #include "run/snapshots/origin.h"
 #include "scenarios/reader/events/event_tables.h"
-#include "scenarios/reader/quantity.h"
+#include "scenarios/values/quantity.h"
 
 #include <fmt/format.h>
 

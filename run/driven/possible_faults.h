@@ -1,7 +1,7 @@
 #pragma once
 // What faults a client may add: kinds with their parameters, and what of the run they can sit on. For forms.
 
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <nlohmann/json_fwd.hpp>
 

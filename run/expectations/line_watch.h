@@ -3,7 +3,7 @@
 
 #include "cosim/trace/trace.h"
 #include "run/expectations/byte_match.h"
-#include "scenarios/reader/expectation.h"
+#include "scenarios/description/expectation.h"
 
 #include <cstddef>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/can/can_bus.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "emu/bluetooth/air_node.h"
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/image/avr_image.h"

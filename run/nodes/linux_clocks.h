@@ -1,7 +1,7 @@
 #pragma once
 // Clocks and sleeps of the robots' Linux boards, which on a table are not alike.
 
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <cstdint>
 #include <string>

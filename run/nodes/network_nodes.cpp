@@ -2,7 +2,7 @@
 
 #include "run/nodes/linux_nodes.h"
 #include "run/nodes/plan_kit.h"
-#include "scenarios/reader/network_tables.h"
+#include "scenarios/tables/network_tables.h"
 
 namespace puckloop::tools {
 

@@ -2,7 +2,7 @@
 // What the command line changes in a scenario.
 
 #include "run/description/run_request.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 
 namespace puckloop::tools {
 

@@ -1,6 +1,6 @@
 #include "run/states/board_identity.h"
 
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "emu/image/avr_image.h"
 #include "emu/image/image.h"
 

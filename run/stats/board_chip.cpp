@@ -1,6 +1,6 @@
 #include "run/stats/board_chip.h"
 
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"

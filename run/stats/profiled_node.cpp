@@ -1,8 +1,8 @@
 #include "run/stats/profiled_node.h"
 
 #include "debug/profile.h"
-#include "emu/avr/chip.h"
-#include "emu/avr/device.h"
+#include "emu/avr/chip/chip.h"
+#include "emu/avr/devices/device.h"
 #include "emu/image/avr_image.h"
 #include "emu/image/image.h"
 #include "emu/image/symbol_sizes.h"

@@ -1,10 +1,10 @@
 // An overlay (`puckloop run --model`): what a verdict found, for any scenario.
 
 #include "physics/description/description.h"
-#include "scenarios/reader/linux_keys.h"
-#include "scenarios/reader/reader.h"
-#include "scenarios/reader/scenario.h"
-#include "scenarios/reader/world_tables.h"
+#include "scenarios/reader/read_scenario.h"
+#include "scenarios/tables/linux_keys.h"
+#include "scenarios/tables/world_tables.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/format.h>
 

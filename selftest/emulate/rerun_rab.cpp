@@ -2,7 +2,7 @@
 
 #include "physics/description/parameters.h"
 #include "reproductions/rab/measure.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "selftest/emulate/record_rab.h"
 
 #include <algorithm>

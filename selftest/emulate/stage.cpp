@@ -6,7 +6,7 @@
 #include "gap/data/written.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"
-#include "scenarios/reader/world_tables.h"
+#include "scenarios/tables/world_tables.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // A chip that runs one of the driver programs (programs/drivers), with what the test put at its pins.
 
 #include "base/random.h"
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 #include "emu/image/avr_image.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "emu/image/avr_image.h"
 #include "tests/scratch.h"
 

@@ -1,6 +1,6 @@
 // Programs made by avr-gcc and avr-libc: the same output and the same number of cycles as on simavr.
 
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 #include "emu/image/avr_image.h"
 #include "tests/avr/simavr.h"
 

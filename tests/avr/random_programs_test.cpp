@@ -2,7 +2,7 @@
 // simavr, translated and interpreted. (Levels may differ: C leaves the order of evaluation open.)
 
 #include "base/random.h"
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 #include "emu/image/avr_image.h"
 #include "tests/avr/random_c.h"
 #include "tests/avr/simavr.h"

@@ -2,7 +2,7 @@
 // A chip for tests: program in assembly, everything at its pins recorded with the cycle.
 
 #include "emu/avr/assembler/assembler.h"
-#include "emu/avr/chip.h"
+#include "emu/avr/chip/chip.h"
 
 #include <array>
 #include <string>

@@ -2,7 +2,7 @@
 // simavr's core as a second opinion, driven one instruction at a time. Debian's libsimavr is GPL 3; it is
 // linked into tests only, never into the product.
 
-#include "emu/avr/core/state.h"
+#include "emu/avr/machine/state.h"
 
 #include <cstdint>
 #include <memory>

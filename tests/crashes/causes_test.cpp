@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/devices/device.h"
 #include "tests/crashes/crash_image.h"

@@ -1,7 +1,7 @@
 #include "tests/debug/drawn_reads.h"
 
 #include "emu/avr/assembler/assembler.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "tests/exec/command.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // presses the button at that instant leaves the same trace.
 
 #include "emu/avr/assembler/assembler.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "emu/image/intel_hex.h"
 #include "tests/crashes/crash_image.h"
 #include "tests/debug/counting_program.h"

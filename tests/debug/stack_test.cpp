@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 #include "tests/crashes/crash_image.h"
 #include "tests/debug/drawn_reads.h"
 #include "tests/exec/command.h"

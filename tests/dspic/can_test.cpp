@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 #include "cosim/faults/kinds/kind_table.h"
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/sfr_space.h"
 #include "tests/can/can_reference.h"
 #include "tests/dspic/can_bus_bench.h"
 

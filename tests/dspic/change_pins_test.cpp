@@ -1,7 +1,7 @@
 // Every pin of change notification and of the external interrupts, and waking by them.
 
-#include "emu/dspic/core/interrupts.h"
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/interrupts.h"
+#include "emu/dspic/machine/sfr_space.h"
 #include "tests/dspic/chip30_bench.h"
 
 #include <catch2/catch.hpp>

@@ -1,10 +1,10 @@
 // The register and interrupt tables hold together: order, uniqueness, fields inside the implemented bits.
 
-#include "emu/dspic/core/sfr_space.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
 #include "emu/dspic/devices/register_bits.h"
+#include "emu/dspic/machine/sfr_space.h"
 
 #include <catch2/catch.hpp>
 

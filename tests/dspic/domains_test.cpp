@@ -2,8 +2,8 @@
 // walk gives for the nth iteration is what the interpreter does when it executes that iteration.
 
 #include "base/random.h"
-#include "emu/dspic/core/execute/semantics.h"
-#include "emu/dspic/fast/affine_domain.h"
+#include "emu/dspic/machine/execute/semantics.h"
+#include "emu/dspic/walk/affine_domain.h"
 
 #include <catch2/catch.hpp>
 
@@ -74,7 +74,7 @@ class Once : public AffineDomain {
     }
     static constexpr std::uint64_t kMost = 1u << 20;
     static constexpr std::uint16_t kFlags = sr::C | sr::Z | sr::N | sr::OV;
-    IdleLoops::Plan plan;
+    LoopPlan plan;
     LoopTrace trace;
     const Op* next = nullptr;
 };
@@ -160,7 +160,7 @@ TEST_CASE("an instruction means the same for affine values and for words") {
                 REQUIRE((m.st.sr & Once::kFlags) == domain.flags());
                 auto expected = untouched;
                 for (std::size_t i = 0; i < domain.plan.count; ++i) {
-                    const IdleLoops::Cell& cell = domain.plan.cells[i];
+                    const LoopPlan::Cell& cell = domain.plan.cells[i];
                     const auto value =
                         static_cast<std::uint16_t>(cell.now + cell.now_step * static_cast<std::int32_t>(n));
                     (cell.key < 16 ? expected.first[cell.key]

@@ -1,7 +1,7 @@
 // ECAN1 of the 33FJ: buffers in DMA RAM, filters, FIFO, remote frames, and a 30F at the other end of the bus.
 
 #include "base/random.h"
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/sfr_space.h"
 #include "tests/can/can_reference.h"
 #include "tests/dspic/can_bus_bench.h"
 

@@ -1,6 +1,6 @@
 // The crystal stops: fail-safe clock monitor, its trap, and a part without it. Times of waking from Sleep.
 
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/sfr_space.h"
 #include "tests/dspic/chip30_bench.h"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // The instruction table itself: no two forms share a word, and fields go in and out.
 
-#include "emu/dspic/core/isa.h"
+#include "emu/dspic/machine/isa.h"
 
 #include <catch2/catch.hpp>
 

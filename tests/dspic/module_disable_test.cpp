@@ -1,6 +1,6 @@
 // PMDx takes modules away: silent, deaf, read as 0, and new when they come back.
 
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/sfr_space.h"
 #include "tests/dspic/chip30_bench.h"
 #include "tests/dspic/chip33_bench.h"
 

@@ -3,7 +3,7 @@
 
 #include "emu/dspic/assembler/disassembler.h"
 #include "emu/dspic/assembler/encoder.h"
-#include "emu/dspic/core/isa.h"
+#include "emu/dspic/machine/isa.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // OC1 to OC8 of the 30F: edges at the pin and their interrupts to the cycle, PWM, fault inputs.
 
 #include "base/random.h"
-#include "emu/dspic/core/interrupts.h"
+#include "emu/dspic/machine/interrupts.h"
 #include "tests/dspic/chip30_bench.h"
 
 #include <catch2/catch.hpp>

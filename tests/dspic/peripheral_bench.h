@@ -3,11 +3,11 @@
 // by cycle.
 
 #include "cosim/core/clock.h"
-#include "emu/dspic/chip/layout.h"
-#include "emu/dspic/core/interrupts.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/layouts/layout.h"
+#include "emu/dspic/machine/interrupts.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"

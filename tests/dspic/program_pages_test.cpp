@@ -1,7 +1,7 @@
 // Chips that share program memory: what one writes or decodes no other sees, and nothing is left behind.
 
 #include "base/random.h"
-#include "emu/dspic/core/program_pages.h"
+#include "emu/dspic/machine/program_pages.h"
 #include "tests/dspic/rig.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // (PUCKLOOP_WRITE_REGISTERS=1) and held to it.
 
 #include "emu/dspic/chip/chip.h"
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/sfr_space.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/waits/status_bits.h"
 

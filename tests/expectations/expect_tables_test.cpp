@@ -1,7 +1,7 @@
 // [[expect]] tables as they are read.
 
 #include "base/error.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>

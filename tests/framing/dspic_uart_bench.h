@@ -2,7 +2,7 @@
 // UART2 of a dsPIC30F6014A at the e-puck's clock, or UART1 of a dsPIC33FJ256GP710 at the range-and-bearing
 // board's, with a clock that may be off.
 
-#include "emu/dspic/chip/layout.h"
+#include "emu/dspic/layouts/layout.h"
 #include "tests/dspic/peripheral_bench.h"
 #include "tests/framing/uart_line.h"
 

@@ -1,6 +1,6 @@
 #include "tests/framing/uart_chips.h"
 
-#include "emu/dspic/chip/layout.h"
+#include "emu/dspic/layouts/layout.h"
 #include "protocols/uart_sampling.h"
 #include "tests/framing/avr_usart_bench.h"
 #include "tests/framing/dspic_uart_bench.h"

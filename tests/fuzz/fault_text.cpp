@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "scenarios/reader/faults/fault_tables.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/fuzz/target.h"
 
 void puckloop::fuzz::run_input(Input input) {

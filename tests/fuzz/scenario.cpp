@@ -1,7 +1,7 @@
 // Scenarios: TOML and what its tables mean.
 
-#include "scenarios/reader/scenario.h"
 #include "base/error.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/fuzz/target.h"
 
 void puckloop::fuzz::run_input(Input input) {

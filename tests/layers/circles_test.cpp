@@ -20,14 +20,11 @@ using Includes = std::map<std::string, std::map<std::string, std::string>>;  // 
 /// smaller has to be smaller here.
 const std::map<std::string, std::size_t> kKnown = {
     {"cosim/faults", 2},            // the table of kinds and what it is a table of
-    {"emu/avr", 5},                 // core, execute, peripherals, translate
-    {"emu/dspic/assembler", 8},     // the machine keeps the state of what accelerates it
     {"gap/clean", 14},              // the analysis of measured data
     {"gap/overlay", 2},             // with gap/pipeline
     {"linuxboard/coordinator", 2},  // with its experiments
     {"linuxboard/shim/devices", 2},
     {"linuxboard/shim/preload", 5},
-    {"scenarios/reader", 4},  // with compose, events and faults
 };
 
 Includes includes() {

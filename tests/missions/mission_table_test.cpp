@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "run/report/mission_score.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>

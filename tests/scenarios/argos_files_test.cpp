@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "scenarios/argos/import.h"
 #include "scenarios/argos/toml_tree.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>
@@ -191,7 +191,8 @@ TEST_CASE("a bad experiment is one line with its place") {
     CHECK(problem_of(
               experiment("<e-puck id=\"e\"><body position=\"nan,0,0\"/><controller config=\"a\"/></e-puck>"))
               .starts_with("line 7: <body>: position"));
-    CHECK(problem_of(experiment(kPuck + "\n" + kPuck)).starts_with("line 8: robot1: another robot is called 'e'"));
+    CHECK(problem_of(experiment(kPuck + "\n" + kPuck))
+              .starts_with("line 8: robot1: another robot is called 'e'"));
     CHECK(problem_of(
               experiment("<e-puck id=\"e\"><body position=\"3,0,0\"/><controller config=\"a\"/></e-puck>"))
               .starts_with("line 7: robot 'e': (3 m, 0 m) is outside the arena"));

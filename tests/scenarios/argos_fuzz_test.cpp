@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "base/text_file.h"
 #include "scenarios/argos/import.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 
 #include <catch2/catch.hpp>
 

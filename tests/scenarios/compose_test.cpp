@@ -1,8 +1,8 @@
 // Includes, variables and images: what a scenario is put together from.
 
 #include "base/error.h"
-#include "scenarios/reader/png_floor.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
+#include "scenarios/values/png_floor.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>

@@ -5,7 +5,7 @@
 #include "scenarios/reader/events/action_forms.h"
 #include "scenarios/reader/events/command_text.h"
 #include "scenarios/reader/events/event_tables.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>

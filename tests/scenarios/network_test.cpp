@@ -1,10 +1,12 @@
 // [network], [[host]], and who has which address.
 
 #include "base/error.h"
-#include "scenarios/reader/network_tables.h"
+#include "scenarios/reader/read_scenario.h"
+#include "scenarios/tables/network_tables.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 using namespace puckloop;
 using namespace puckloop::scenarios;

@@ -1,4 +1,4 @@
-#include "scenarios/reader/quantity.h"
+#include "scenarios/values/quantity.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 #include "base/error.h"
 #include "base/random.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 #include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 #include "tests/state/board_runs.h"
 
-#include "emu/dspic/core/isa.h"
 #include "emu/dspic/devices/device.h"
+#include "emu/dspic/machine/isa.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
 #include "tests/node_under_test.h"

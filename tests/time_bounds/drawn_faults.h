@@ -1,7 +1,7 @@
 #pragma once
 // Faults that are drawn from the table of all kinds: whatever a scenario's links and nodes can have.
 
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 #include "tests/time_bounds/draw.h"
 
 #include <string>

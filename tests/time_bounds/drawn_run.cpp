@@ -5,7 +5,7 @@
 #include "run/factory/node_factory.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 
 #include <algorithm>
 

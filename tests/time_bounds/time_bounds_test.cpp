@@ -2,7 +2,7 @@
 // supply, is commanded or fails, at whichever instant and in whichever state; and the trace depends neither
 // on how grants are cut, nor on placement, nor on where the run was saved and loaded.
 
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/time_bounds/drawn_faults.h"
 #include "tests/time_bounds/drawn_run.h"
 #include "tests/time_bounds/scenarios.h"

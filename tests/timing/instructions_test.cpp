@@ -1,6 +1,6 @@
 // Cycles of instructions, timed by programs: docs/timing_rules.md, rules I1, I4 and I6.
 
-#include "emu/dspic/core/isa.h"
+#include "emu/dspic/machine/isa.h"
 #include "tests/timing/timed_chip.h"
 
 #include "base/random.h"

@@ -8,7 +8,7 @@
 #include "benchmark/timed_run.h"
 #include "benchmark/wander_scenario.h"
 #include "benchmark/work_profile.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/scratch.h"
 #include "tests/tools/shell.h"
 

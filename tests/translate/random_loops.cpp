@@ -1,7 +1,7 @@
 #include "tests/translate/random_loops.h"
 
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/core/isa.h"
+#include "emu/dspic/machine/isa.h"
 
 #include <iterator>
 #include <string>

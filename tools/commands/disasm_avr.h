@@ -1,7 +1,7 @@
 #pragma once
 // The AVR half of `puckloop disasm`.
 
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 
 #include <cstdint>
 #include <optional>

@@ -3,7 +3,7 @@
 #include "scenarios/argos/import.h"
 #include "base/error.h"
 #include "scenarios/argos/toml_tree.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"

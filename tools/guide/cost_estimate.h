@@ -1,7 +1,7 @@
 #pragma once
 // What a run will cost in time, from what runs cost on the machine of docs/performance.md.
 
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <optional>
 

@@ -11,7 +11,7 @@
 // I/O addresses below 0x40 and their data addresses above, so that `in r0, SREG` and `lds r0, UDR0` both
 // work.
 
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 
 #include <cstdint>
 #include <map>

@@ -1,6 +1,7 @@
 #include "emu/avr/core/core.h"
 
-#include "emu/avr/core/machine.h"
+#include "emu/avr/core/run.h"
+#include "emu/avr/machine/machine.h"
 #include "emu/chip/translation_switch.h"
 
 #include <algorithm>
@@ -20,20 +21,6 @@ const Op* wrap(Machine& m, const Op* op) {
 }
 
 }  // namespace
-
-std::string_view to_string(ResetCause cause) {
-    switch (cause) {
-    case ResetCause::PowerOn:
-        return "power-on";
-    case ResetCause::External:
-        return "external";
-    case ResetCause::BrownOut:
-        return "brown-out";
-    case ResetCause::Watchdog:
-        return "watchdog";
-    }
-    return "?";
-}
 
 Machine::Machine(const DeviceInfo& info, IoSpace& registers, EventQueue& queue,
                  InterruptController& controller)

@@ -1,9 +1,12 @@
-// The run loop: instructions, interrupt entry, resets, stops, and waiting.
+// Instructions, interrupt entry, stops, and waiting.
 //
 // Everything that has to interrupt the flow (an event, the end of the grant, an interrupt, a stop) is folded
 // into Machine::limit; the inner loop compares the cycle with it and nothing else.
 
-#include "emu/avr/core/machine.h"
+#include "emu/avr/core/run.h"
+
+#include "emu/avr/machine/machine.h"
+#include "emu/avr/translate/translation.h"
 
 #include <algorithm>
 #include <utility>
@@ -88,26 +91,6 @@ void enter_interrupt(Machine& m) {
 }
 
 }  // namespace
-
-void perform_reset(Machine& m, ResetCause cause) {
-    m.reset_request.reset();
-    m.anew = true;
-    m.now = m.cycle;
-    if (m.observer.on_reset) m.observer.on_reset(cause, m.pc_of(m.current), m.cycle);
-    m.stall_end = 0;  // the hook may halt it anew
-    if (m.instrument) m.instrument->reset(m.cycle);
-    if (m.hooks.reset) m.hooks.reset(cause);
-    m.irq.reset();
-    m.sreg = 0;
-    m.rampz = 0;
-    m.sp = static_cast<std::uint16_t>(m.device.ram_end() - 1);
-    m.asleep = m.stopped = m.started = false;
-    m.last_vector = -1;
-    m.hold_at = kNoCycle;
-    m.limit = 0;
-    m.pass_pc.reset();
-    m.current = m.code + (m.hooks.reset_pc ? m.hooks.reset_pc() : 0);
-}
 
 Core::Outcome run_until(Machine& m, Cycle until) {
     m.end_requested = false;

@@ -8,7 +8,7 @@
 //
 // pc and p count bytes, as avr-gcc's symbols do, and are even. m takes RAM and GPIOR0..2 (003e, 004a, 004b).
 
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 
 #include <memory>
 #include <string>

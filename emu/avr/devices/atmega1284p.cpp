@@ -1,6 +1,6 @@
 // The ATmega1284P. Source: data sheet 8272.
 
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 
 namespace puckloop::avr {
 

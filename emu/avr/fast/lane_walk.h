@@ -12,9 +12,9 @@
 // What the last of them leaves in registers, flags and RAM is then written back, and its reads of modules are
 // done for real, so that these are as if every turn had been executed.
 
-#include "emu/avr/core/alu.h"
-#include "emu/avr/core/machine.h"
 #include "emu/avr/fast/lanes.h"
+#include "emu/avr/machine/alu.h"
+#include "emu/avr/machine/machine.h"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 // A byte that has another value in each of many turns of a loop: one lane per turn, operated on side by side.
 // Has the operators of a byte, so that the formulas of core/alu.h serve for it as for one.
 
-#include "emu/avr/core/state.h"
+#include "emu/avr/machine/state.h"
 
 #include <array>
 #include <bit>

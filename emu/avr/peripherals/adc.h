@@ -7,8 +7,8 @@
 //  2. Sleep has no effect on the result.
 //  3. A trigger resets the ADC's prescaler in the clock of the trigger.
 
+#include "emu/avr/peripherals/pins.h"
 #include "emu/avr/peripherals/surroundings.h"
-#include "emu/avr/pins.h"
 
 #include <cstdint>
 #include <functional>

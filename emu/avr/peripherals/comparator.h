@@ -7,8 +7,8 @@
 //  comparator has no
 //     hysteresis, and its synchronising delay of 1 to 2 clocks is left out.
 
+#include "emu/avr/peripherals/pins.h"
 #include "emu/avr/peripherals/surroundings.h"
-#include "emu/avr/pins.h"
 
 namespace puckloop::avr {
 

@@ -6,7 +6,7 @@
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
-#include "emu/avr/core/memory_undo.h"
+#include "emu/avr/machine/memory_undo.h"
 #include "emu/avr/peripherals/surroundings.h"
 
 #include <cstdint>

@@ -7,8 +7,8 @@
 //  to 1.5.
 //  2. Inputs are not cut off in the deeper sleep modes.
 
+#include "emu/avr/peripherals/pins.h"
 #include "emu/avr/peripherals/surroundings.h"
-#include "emu/avr/pins.h"
 
 #include <array>
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
-#include "emu/avr/fuses.h"
+#include "emu/avr/devices/fuses.h"
 #include "emu/avr/peripherals/system_control.h"
 
 #include <cstdint>

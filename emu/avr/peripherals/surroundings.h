@@ -1,8 +1,8 @@
 #pragma once
 // What every peripheral is connected to, and the bits that it works with.
 
-#include "emu/avr/core/interrupts.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
+#include "emu/avr/machine/interrupts.h"
 
 #include <cstdint>
 

@@ -9,7 +9,7 @@
 //  2. The CPU sees each edge three of its clocks late; the compare pins follow then, not with the edge.
 
 #include "cosim/core/clock.h"
-#include "emu/avr/device.h"
+#include "emu/avr/devices/device.h"
 
 #include <cstdint>
 #include <functional>

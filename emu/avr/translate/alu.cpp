@@ -1,6 +1,6 @@
 // Adding, subtracting, logic, shifting, multiplying, single bits: on working registers in memory.
 
-#include "emu/avr/core/alu.h"
+#include "emu/avr/machine/alu.h"
 #include "emu/avr/translate/emitter.h"
 
 namespace puckloop::avr::translate {

@@ -1,6 +1,6 @@
 // Where the flags are, and how SREG gets them.
 
-#include "emu/avr/core/alu.h"
+#include "emu/avr/machine/alu.h"
 #include "emu/avr/translate/emitter.h"
 
 #include <cstddef>

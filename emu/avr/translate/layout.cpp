@@ -1,6 +1,6 @@
 #include "emu/avr/translate/layout.h"
 
-#include "emu/avr/core/alu.h"
+#include "emu/avr/machine/alu.h"
 
 namespace puckloop::avr::translate {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Where translated code finds a core's fields, as distances from the Machine, and its tables.
 
-#include "emu/avr/core/machine.h"
+#include "emu/avr/machine/machine.h"
 
 #include <array>
 #include <cstdint>

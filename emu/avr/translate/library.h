@@ -2,7 +2,7 @@
 // All blocks translated in this process for one kind of chip. A block is made once, and found again by its
 // program address and words.
 
-#include "emu/avr/core/machine.h"
+#include "emu/avr/machine/machine.h"
 
 namespace puckloop::avr::translate {
 

@@ -1,6 +1,6 @@
 #include "emu/avr/translate/translation.h"
 
-#include "emu/avr/core/machine.h"
+#include "emu/avr/machine/machine.h"
 #include "emu/avr/translate/library.h"
 
 #include <algorithm>
@@ -38,11 +38,6 @@ std::uint32_t block_at(Machine& m, std::uint32_t index) {
 }
 
 }  // namespace
-
-Translated::~Translated() {
-    std::free(entries);
-    std::free(heat);
-}
 
 bool run_translated(Machine& m) {
     if (!m.translated.library && !prepare(m)) return false;

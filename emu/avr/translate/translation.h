@@ -1,34 +1,11 @@
 #pragma once
-// Translated code as one core sees it: which program words begin a block, and how often others were come to.
-// Blocks themselves are shared by all cores of the process (library.h).
-
-#include <cstdint>
+// Execution by translated code: blocks are made where a program comes often (library.h), and entered.
 
 namespace puckloop::avr {
 
 struct Machine;
-namespace translate {
-class Library;
-}
-
-struct Translated {
-    bool on = true;                         ///< Core::set_translate()
-    std::uint8_t hot = 0;                   ///< arrivals that make a block
-    translate::Library* library = nullptr;  ///< null: nothing is translated (yet)
-    /// By program word: offset of the block's code, 0 = none. The pages are taken as they are used.
-    std::uint32_t* entries = nullptr;
-    std::uint8_t* heat = nullptr;  ///< by program word: arrivals without a block
-
-    Translated() = default;
-    ~Translated();
-    Translated(const Translated&) = delete;
-    Translated& operator=(const Translated&) = delete;
-};
 
 /// Executes from Machine::current on while the cycle is below Machine::limit, exactly as the interpreter
 /// would. False: this host cannot, and nothing was executed.
 bool run_translated(Machine& m);
-/// The operation at this program word changed: blocks that rest on it are not entered any more.
-void forget_blocks(Machine& m, std::uint32_t index);
-
 }  // namespace puckloop::avr

@@ -2,8 +2,8 @@
 // How a form's operands stand in its word: the operand column of the instruction table, parsed once, with
 // every field's place computed. Assembler and disassembler are two walks over the same items.
 
-#include "emu/dspic/core/isa.h"
-#include "emu/dspic/core/memory_map.h"
+#include "emu/dspic/machine/isa.h"
+#include "emu/dspic/machine/memory_map.h"
 
 #include <array>
 #include <cstdint>

@@ -9,13 +9,13 @@
 #include "cosim/core/time.h"
 #include "cosim/core/work_counts.h"
 #include "emu/chip/held_interrupts.h"
-#include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/errata.h"
+#include "emu/dspic/judge/wait_report.h"
+#include "emu/dspic/machine/event_queue.h"
 #include "emu/dspic/peripherals/output_compare_state.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/uart_counters.h"
-#include "emu/dspic/waits/wait_report.h"
 
 #include <cstdint>
 #include <map>

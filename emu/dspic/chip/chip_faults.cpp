@@ -1,7 +1,7 @@
 #include "emu/dspic/chip/chip_faults.h"
 
 #include "emu/dspic/core/core.h"
-#include "emu/dspic/core/memory_map.h"
+#include "emu/dspic/machine/memory_map.h"
 
 #include <algorithm>
 #include <array>

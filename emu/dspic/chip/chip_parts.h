@@ -2,11 +2,11 @@
 // The modules of a dsPIC, as chip.h's class has them inside: for that class's own files only.
 
 #include "emu/dspic/chip/chip.h"
-#include "emu/dspic/chip/layout.h"
 #include "emu/dspic/chip/module_disable.h"
 #include "emu/dspic/chip/supply_reset.h"
 #include "emu/dspic/core/core.h"
-#include "emu/dspic/core/interrupts.h"
+#include "emu/dspic/layouts/layout.h"
+#include "emu/dspic/machine/interrupts.h"
 #include "emu/dspic/peripherals/adc12.h"
 #include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/external_interrupts.h"

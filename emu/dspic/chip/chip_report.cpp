@@ -2,7 +2,7 @@
 
 #include "emu/dspic/chip/chip_parts.h"
 #include "emu/dspic/fast/fast_work.h"
-#include "emu/dspic/waits/judge.h"
+#include "emu/dspic/judge/judge.h"
 #include "emu/dspic/waits/status_bits.h"
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 //  2. The bits of the 33FJ's CAN modules are stored. Pins of a converter that is off stay as ADPCFG
 //     has them (silicon: digital).
 
-#include "emu/dspic/chip/layout.h"
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/layouts/layout.h"
+#include "emu/dspic/machine/sfr_space.h"
 
 #include <array>
 #include <cstdint>

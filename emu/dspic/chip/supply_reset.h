@@ -11,7 +11,7 @@
 //     oscillator's start.
 
 #include "emu/dspic/core/core.h"
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 #include "emu/dspic/peripherals/pins.h"
 
 #include <cstdint>

@@ -2,9 +2,12 @@
 
 #include "base/error.h"
 #include "emu/chip/translation_switch.h"
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/core/run.h"
 #include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/fast/known_services.h"
 #include "emu/dspic/fast/loop_undo.h"
+#include "emu/dspic/machine/machine.h"
+#include "emu/dspic/waits/wait_watch.h"
 
 #include <fmt/format.h>
 
@@ -12,26 +15,6 @@
 #include <utility>
 
 namespace puckloop::dspic {
-
-std::string_view to_string(ResetCause cause) {
-    switch (cause) {
-    case ResetCause::PowerOn:
-        return "power-on";
-    case ResetCause::BrownOut:
-        return "brown-out";
-    case ResetCause::Mclr:
-        return "MCLR";
-    case ResetCause::Software:
-        return "RESET instruction";
-    case ResetCause::Watchdog:
-        return "watchdog";
-    case ResetCause::TrapConflict:
-        return "trap conflict";
-    case ResetCause::IllegalOpcode:
-        return "illegal opcode or uninitialised W register";
-    }
-    return "";
-}
 
 Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
                  InterruptController& controller)
@@ -42,7 +25,8 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
       pages(info.flash_end / 2, kGuards),
       program(pages.words()),
       skip(std::make_unique<IdleLoops>()),
-      loop_undo(std::make_unique<LoopUndo>()) {
+      loop_undo(std::make_unique<LoopUndo>()),
+      services(std::make_unique<KnownServices>()) {
     code_words = info.flash_end / 2;
     code = pages.operations();
     current = code;
@@ -70,12 +54,6 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
 }
 
 Machine::~Machine() = default;
-
-void warn_once(Machine& m, std::uint32_t key, std::string_view text) {
-    if (std::find(m.warned.begin(), m.warned.end(), key) != m.warned.end()) return;
-    m.warned.push_back(key);
-    if (m.observer.on_warning) m.observer.on_warning(text, m.pc_of(m.current));
-}
 
 Core::Core(const DeviceInfo& device, SfrSpace& sfr, EventQueue& events, InterruptController& interrupts)
     : machine_(std::make_unique<Machine>(device, sfr, events, interrupts)) {}

@@ -7,13 +7,14 @@
 #include "base/archive.h"
 #include "base/checkpoint.h"
 #include "emu/chip/instrument.h"
-#include "emu/dspic/core/core_state.h"
-#include "emu/dspic/core/event_queue.h"
-#include "emu/dspic/core/interrupts.h"
-#include "emu/dspic/core/sfr_space.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/errata.h"
-#include "emu/dspic/waits/wait_watch.h"
+#include "emu/dspic/machine/core_observer.h"
+#include "emu/dspic/machine/core_state.h"
+#include "emu/dspic/machine/event_queue.h"
+#include "emu/dspic/machine/interrupts.h"
+#include "emu/dspic/machine/sfr_space.h"
+#include "emu/dspic/machine/stays.h"
 
 #include <cstdint>
 #include <functional>
@@ -23,33 +24,10 @@
 
 namespace puckloop::dspic {
 
-enum class ResetCause : std::uint8_t {
-    PowerOn,
-    BrownOut,
-    Mclr,
-    Software,
-    Watchdog,
-    TrapConflict,
-    IllegalOpcode
-};
-std::string_view to_string(ResetCause cause);
-
-enum class PowerMode : std::uint8_t { Run, Idle, Sleep };
-
 /// One word of program space. `address` in program-counter units, even; EEPROM and configuration words too.
 struct ProgramWord {
     std::uint32_t address = 0;
     std::uint32_t word = 0;  ///< 24 bits
-};
-
-/// What happened inside, for logs and reports. All optional.
-struct CoreObserver {
-    /// `pc`: of the instruction that caused it.
-    std::function<void(ResetCause cause, std::uint32_t pc, Cycle now)> on_reset;
-    std::function<void(Trap trap, std::uint32_t pc, Cycle now)> on_trap;
-    std::function<void(int vector, std::uint32_t pc, Cycle now)> on_interrupt;
-    /// One line, at most once each: "0xDA4000 (debugger break) executed as NOP", ...
-    std::function<void(std::string_view text, std::uint32_t pc)> on_warning;
 };
 
 struct FastWork;

@@ -2,7 +2,7 @@
 
 #include "emu/chip/vector_text.h"
 #include "emu/dspic/core/core.h"
-#include "emu/dspic/core/isa.h"
+#include "emu/dspic/machine/isa.h"
 
 #include <fmt/format.h>
 

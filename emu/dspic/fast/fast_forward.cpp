@@ -1,6 +1,7 @@
 #include "emu/dspic/fast/fast_forward.h"
 
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/isr_summary.h"
+#include "emu/dspic/machine/machine.h"
 
 #include <algorithm>
 #include <array>

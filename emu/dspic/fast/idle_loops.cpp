@@ -1,10 +1,12 @@
 #include "emu/dspic/fast/idle_loops.h"
 
-#include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/fast_forward.h"
+#include "emu/dspic/fast/known_services.h"
 #include "emu/dspic/fast/loop_advance.h"
 #include "emu/dspic/fast/loop_undo.h"
-#include "emu/dspic/fast/symbolic_loop.h"
+#include "emu/dspic/machine/machine.h"
+#include "emu/dspic/waits/wait_watch.h"
+#include "emu/dspic/walk/symbolic_loop.h"
 
 #include <algorithm>
 #include <utility>
@@ -141,12 +143,6 @@ Cycle clean_arrival(Machine& m, IdleLoops::Branch& known, Cycle arrival) {
 
 }  // namespace
 
-void IdleLoops::Plan::advance(std::uint64_t passed) {
-    for (std::size_t i = 0; i < count; ++i)
-        cells[i].now += static_cast<std::int32_t>(static_cast<std::int64_t>(passed) * cells[i].step);
-    iterations -= passed;
-}
-
 void forget_loops(Machine& m) {
     m.loop_undo->note_forgetting(m);
     m.waits.forget();
@@ -154,8 +150,8 @@ void forget_loops(Machine& m) {
     m.skip->branches.clear();
     m.skip->waits.clear();
     m.skip->position = {};
-    m.isr_summaries.known.clear();
-    m.isr_paths.clear();
+    m.services->summaries.clear();
+    m.services->paths.clear();
     publish_loops(m);
 }
 

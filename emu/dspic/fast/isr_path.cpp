@@ -1,8 +1,10 @@
 #include "emu/dspic/fast/isr_path.h"
 
-#include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/fast/known_services.h"
 #include "emu/dspic/fast/path_domain.h"
+#include "emu/dspic/machine/machine.h"
+#include "emu/dspic/waits/wait_watch.h"
 
 #include <algorithm>
 #include <array>
@@ -48,7 +50,7 @@ bool holds(const Machine& m, const IsrPath& path, const Service& service) {
 }
 
 IsrPaths* paths_of(Machine& m, int vector) {
-    auto& known = m.isr_paths;
+    auto& known = m.services->paths;
     const auto index = static_cast<std::size_t>(vector);
     if (known.size() <= index) known.resize(index + 1);
     const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;
@@ -94,8 +96,8 @@ bool may_walk(IsrPaths& all) {
 /// Neither paths nor walks are of use to the routine for now.
 bool is_left_alone(Machine& m, int vector) {
     const auto index = static_cast<std::size_t>(vector);
-    if (index >= m.isr_paths.size()) return false;
-    IsrPaths& all = m.isr_paths[index];
+    if (index >= m.services->paths.size()) return false;
+    IsrPaths& all = m.services->paths[index];
     std::uint32_t& services = all.paths.empty() ? all.pause : all.rest;
     if (services == 0) return false;
     --services;
@@ -142,7 +144,7 @@ void store_at_once(const IsrPath& path) {
 
 bool has_paths(const Machine& m, int vector) {
     const auto index = static_cast<std::size_t>(vector);
-    return index < m.isr_paths.size() && !m.isr_paths[index].paths.empty();
+    return index < m.services->paths.size() && !m.services->paths[index].paths.empty();
 }
 
 const IsrPath* isr_path(Machine& m, int vector, const Service& service) {

@@ -9,7 +9,7 @@
 // touches the core's registers, RAM and registers that are plain storage can be remembered.
 // (epuck_firmware.hex copies the converter's results in an interrupt 12,000 times a second, byte by byte.)
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #include "emu/dspic/fast/isr_summary.h"
 
+#include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/fast/known_services.h"
 #include "emu/dspic/fast/loop_undo.h"
 #include "emu/dspic/fast/symbolic_isr.h"
 
@@ -9,7 +11,7 @@ using Word = IsrSummary::Word;
 
 const IsrSummary* isr_summary(Machine& m, int vector) {
     if (vector < kTrapVectors) return nullptr;
-    auto& known = m.isr_summaries.known;
+    auto& known = m.services->summaries;
     const auto index = static_cast<std::size_t>(vector);
     if (known.size() <= index) known.resize(index + 1);
     const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;

@@ -8,7 +8,7 @@
 // its end; else the routine is executed. (A firmware that refreshes a duty cycle at every period of its
 // carrier spends a third of its instructions in such a routine.)
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <array>
 #include <cstdint>
@@ -47,11 +47,6 @@ struct IsrSummary {
     std::uint32_t writes = 0;  ///< the last instruction's, for a stall behind it
     std::uint64_t cycles = 0;  ///< from the first instruction's start to the end of RETFIE
     std::uint64_t instructions = 0;
-};
-
-/// By vector; filled as they are met.
-struct IsrSummaries {
-    std::vector<std::optional<IsrSummary>> known;
 };
 
 /// What a routine interrupts: registers, status and the address to come back to.

@@ -1,6 +1,7 @@
 #include "emu/dspic/fast/loop_advance.h"
 
 #include "emu/dspic/fast/fast_forward.h"
+#include "emu/dspic/waits/wait_watch.h"
 
 #include <algorithm>
 

@@ -7,8 +7,8 @@
 // cycle follows by a division. Events and interrupts come in between as always, at their exact boundaries;
 // after a routine the state is compared anew.
 
-#include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/machine/machine.h"
 
 namespace puckloop::dspic {
 
@@ -17,5 +17,8 @@ namespace puckloop::dspic {
 bool enter_loop(Machine& m, IdleLoops::Branch& known);
 /// The same for a loop in which the machine was when it last advanced, and whose branch was now executed.
 bool back_in_loop(Machine& m, IdleLoops::Branch& known);
+/// Inside a waiting loop: goes on towards Machine::limit, exactly as executing would. False, and nothing
+/// done, if the machine is not where Machine::skip expects it.
+bool advance_in_loop(Machine& m);
 
 }  // namespace puckloop::dspic

@@ -1,7 +1,7 @@
 #include "emu/dspic/fast/loop_table.h"
 
-#include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/machine/machine.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // A loop as a table: for every boundary between two of its instructions, what registers and words hold there
 // and how long they have held it. Made from a loop's plan and trace (idle_loops.h) for loop_advance.h.
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,7 @@
 #include "emu/dspic/fast/loop_undo.h"
 
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/known_services.h"
+#include "emu/dspic/machine/machine.h"
 
 #include <utility>
 
@@ -68,7 +69,7 @@ void LoopUndo::take_back(Machine& m) {
     m.skip->waits.resize(m.skip->branches.size(), 0);
     publish_loops(m);
     for (auto note = summaries_.rbegin(); note != summaries_.rend(); ++note)
-        m.isr_summaries.known[note->first] = note->second;
+        m.services->summaries[note->first] = note->second;
     summaries_.clear();
 }
 
@@ -76,18 +77,18 @@ void LoopUndo::note_forgetting(Machine& m) {
     if (!on_ || forgotten_) return;
     take_back(m);
     forgotten_.emplace(Forgotten{std::move(m.skip->index), std::move(m.skip->branches),
-                                 std::move(m.skip->waits), std::move(m.isr_summaries.known)});
+                                 std::move(m.skip->waits), std::move(m.services->summaries)});
 }
 
 void LoopUndo::rewind(Machine& m) {
     m.skip->position = {};
     if (forgotten_) {
-        m.isr_paths.clear();  // of code that is not there any more
+        m.services->paths.clear();  // of code that is not there any more
         m.skip->index = std::move(forgotten_->index);
         m.skip->branches = std::move(forgotten_->branches);
         m.skip->waits = std::move(forgotten_->waits);
         publish_loops(m);
-        m.isr_summaries.known = std::move(forgotten_->isr_summaries);
+        m.services->summaries = std::move(forgotten_->isr_summaries);
     } else {
         take_back(m);
     }

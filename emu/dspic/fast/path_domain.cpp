@@ -1,7 +1,7 @@
 #include "emu/dspic/fast/path_domain.h"
 
-#include "emu/dspic/core/execute/semantics.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/machine/execute/semantics.h"
 
 #include <algorithm>
 

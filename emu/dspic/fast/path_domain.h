@@ -1,12 +1,12 @@
 #pragma once
 // The walk through a service routine along the path that it takes from the machine's present state
-// (isr_path.h). Its domain (see core/execute/words.h) carries numbers together with where they come
+// (isr_path.h). Its domain (see machine/execute/words.h) carries numbers together with where they come
 // from: a word that the routine found plus a constant. Where an instruction needs the number itself, or
 // a flag that hangs on it, the path gets a condition on that word under which the outcome is the same. It
 // leaves by an exception where the routine does more than a path can hold.
 
 #include "emu/dspic/fast/isr_path.h"
-#include "emu/dspic/fast/symbolic_execution.h"
+#include "emu/dspic/walk/symbolic_execution.h"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "emu/dspic/fast/symbolic_isr.h"
 
-#include "emu/dspic/core/execute/semantics.h"
+#include "emu/dspic/machine/execute/semantics.h"
 
 #include <algorithm>
 

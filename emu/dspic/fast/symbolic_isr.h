@@ -1,11 +1,11 @@
 #pragma once
-// The walk through a service routine (isr_summary.h). Its domain (core/execute/words.h defines what that
+// The walk through a service routine (isr_summary.h). Its domain (machine/execute/words.h defines what that
 // is) has names for what the routine finds: registers by their numbers, the stack by offsets from the
 // interrupted stack pointer, constants. It leaves by an exception where the routine does more than a summary
 // can say.
 
 #include "emu/dspic/fast/isr_summary.h"
-#include "emu/dspic/fast/symbolic_execution.h"
+#include "emu/dspic/walk/symbolic_execution.h"
 
 #include <array>
 #include <vector>

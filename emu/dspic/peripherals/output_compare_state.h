@@ -1,6 +1,6 @@
 #pragma once
 
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 namespace puckloop::dspic {
 

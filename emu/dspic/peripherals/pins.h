@@ -2,7 +2,7 @@
 // What stands around the chip, seen from its pins. The chip knows no board: a board implements this.
 
 #include "cosim/core/message.h"
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 #include <cstdint>
 #include <string_view>

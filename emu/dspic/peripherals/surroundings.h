@@ -2,9 +2,9 @@
 // What a peripheral sees of the chip around it: its registers, the timetable, the present cycle, and the
 // interrupt controller.
 
-#include "emu/dspic/core/event_queue.h"
-#include "emu/dspic/core/interrupts.h"
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/machine/event_queue.h"
+#include "emu/dspic/machine/interrupts.h"
+#include "emu/dspic/machine/sfr_space.h"
 
 #include <cstdint>
 

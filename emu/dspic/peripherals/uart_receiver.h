@@ -2,7 +2,7 @@
 // The receiver of a serial line that all chips share.
 
 #include "emu/chip/uart_receiver.h"
-#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/machine/event_queue.h"
 
 namespace puckloop::dspic {
 

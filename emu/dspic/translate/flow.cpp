@@ -1,7 +1,7 @@
 // Branches, skips, calls and returns, and what happens at a taken backward branch (idle_loops.h,
 // wait_watch.h).
 
-#include "emu/dspic/core/exception_frame.h"
+#include "emu/dspic/machine/exception_frame.h"
 #include "emu/dspic/translate/emitter.h"
 
 namespace puckloop::dspic::translate {

@@ -1,7 +1,5 @@
 #include "emu/dspic/translate/layout.h"
 
-#include "emu/dspic/translate/translation.h"
-
 namespace puckloop::dspic::translate {
 
 Layout::Layout(const Machine& m) {

@@ -1,7 +1,7 @@
 #pragma once
 // Where translated code finds a machine's fields: distances from Machine::st, which one host register holds.
 
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/machine/machine.h"
 
 namespace puckloop::dspic::translate {
 

@@ -2,7 +2,7 @@
 // All blocks translated in this process for one kind of chip. Robots run the same firmware: a block is made
 // once, and found again by its program address and words.
 
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/machine/machine.h"
 
 namespace puckloop::dspic::translate {
 

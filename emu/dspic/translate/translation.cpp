@@ -1,8 +1,9 @@
 #include "emu/dspic/translate/translation.h"
 
-#include "emu/dspic/core/interpret.h"
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/machine/interpret.h"
+#include "emu/dspic/machine/machine.h"
 #include "emu/dspic/translate/library.h"
+#include "emu/dspic/waits/wait_watch.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -45,11 +46,6 @@ std::uint32_t block_at(Machine& m, std::uint32_t index) {
 }
 
 }  // namespace
-
-Translated::~Translated() {
-    std::free(entries);
-    std::free(heat);
-}
 
 void run_translated(Machine& m) {
     if (!m.translated.library && !prepare(m)) return run_interpreted(m);

@@ -1,7 +1,7 @@
 #include "emu/dspic/waits/loop_conditions.h"
 
-#include "emu/dspic/core/machine.h"
-#include "emu/dspic/fast/symbolic_loop.h"
+#include "emu/dspic/machine/machine.h"
+#include "emu/dspic/walk/symbolic_loop.h"
 
 #include <algorithm>
 
@@ -29,11 +29,11 @@ class Finder {
         for (const LoopTrace::Boundary& boundary : trace.boundaries)
             path_.push_back(boundary.op);
         if (!walk.chose()) return finding;
-        const IdleLoops::Plan plan = plan_;  // the walks to come overwrite it
+        const LoopPlan plan = plan_;  // the walks to come overwrite it
         for (std::size_t i = 0; i < plan.polled_count; ++i)
             try_word(plan.polled[i].address, plan.polled[i].value, finding);
         for (std::size_t i = 0; i < plan.count; ++i) {
-            const IdleLoops::Cell& cell = plan.cells[i];
+            const LoopPlan::Cell& cell = plan.cells[i];
             if (cell.key < kRamStart || !cell.carried || cell.step != 0 || is_local(cell.key)) continue;
             try_word(cell.key, static_cast<std::uint16_t>(cell.start), finding);
         }
@@ -77,7 +77,7 @@ class Finder {
     const Machine& m_;
     const Op* branch_;
     const Op* head_;
-    IdleLoops::Plan plan_;
+    LoopPlan plan_;
     std::vector<const Op*> path_;
 };
 

@@ -1,7 +1,6 @@
 #include "emu/dspic/waits/wait_watch.h"
 
-#include "emu/dspic/core/machine.h"
-#include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/machine/machine.h"
 #include "emu/dspic/waits/loop_conditions.h"
 #include "emu/dspic/waits/status_bits.h"
 

@@ -4,9 +4,9 @@
 #include "physics/description/robot_parameters.h"
 #include "scenarios/reader/compose/placement.h"
 #include "scenarios/reader/compose/spread.h"
-#include "scenarios/reader/robot_tables.h"
-#include "scenarios/reader/thing_tables.h"
-#include "scenarios/reader/world_tables.h"
+#include "scenarios/tables/robot_tables.h"
+#include "scenarios/tables/thing_tables.h"
+#include "scenarios/tables/world_tables.h"
 
 #include <fmt/format.h>
 

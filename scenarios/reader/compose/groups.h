@@ -2,8 +2,8 @@
 // [[group]] tables: many robots or things from one description.
 
 #include "base/toml_file.h"
-#include "scenarios/reader/reader.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
+#include "scenarios/values/reader.h"
 
 #include <string>
 

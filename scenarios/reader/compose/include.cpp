@@ -1,7 +1,7 @@
 #include "scenarios/reader/compose/include.h"
 
 #include "base/error.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/format.h>
 

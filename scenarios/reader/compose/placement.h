@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "physics/description/plan.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/format.h>
 

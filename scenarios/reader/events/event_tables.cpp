@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "scenarios/reader/events/action_forms.h"
 #include "scenarios/reader/events/command_text.h"
-#include "scenarios/reader/thing_tables.h"
+#include "scenarios/tables/thing_tables.h"
 
 #include <fmt/format.h>
 

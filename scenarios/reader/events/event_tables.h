@@ -2,7 +2,7 @@
 // [[event]] tables of a scenario, and the same actions from a command.
 
 #include "physics/events/event.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <filesystem>
 #include <string_view>

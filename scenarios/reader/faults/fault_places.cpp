@@ -1,6 +1,6 @@
 #include "scenarios/reader/faults/fault_places.h"
 
-#include "scenarios/reader/network_tables.h"
+#include "scenarios/tables/network_tables.h"
 
 namespace puckloop::scenarios {
 

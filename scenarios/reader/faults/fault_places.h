@@ -2,7 +2,7 @@
 // What faults can sit on: the links and nodes of a scenario that have kinds of faults.
 
 #include "cosim/faults/kinds/kind_table.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <string>
 #include <vector>

@@ -6,7 +6,7 @@
 #include "scenarios/reader/faults/fault_places.h"
 #include "scenarios/reader/faults/fault_when.h"
 #include "scenarios/reader/faults/fault_words.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <fmt/format.h>
 

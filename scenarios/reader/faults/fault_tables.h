@@ -2,7 +2,7 @@
 // The [[fault]] tables of a scenario, and faults of the command line.
 
 #include "base/toml_file.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/description/scenario.h"
 
 #include <string>
 #include <string_view>

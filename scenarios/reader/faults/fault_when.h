@@ -2,7 +2,7 @@
 // When a fault happens and to which of what comes by: the keys that all kinds of one style share.
 
 #include "cosim/faults/kinds/kind_table.h"
-#include "scenarios/reader/reader.h"
+#include "scenarios/values/reader.h"
 
 #include <cstdint>
 #include <string>

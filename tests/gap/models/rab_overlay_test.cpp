@@ -3,7 +3,7 @@
 
 #include "gap/pipeline/analyse.h"
 #include "protocols/rab_reading.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/physics/ir_worlds.h"
 #include "tests/scratch.h"
 

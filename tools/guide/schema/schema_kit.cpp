@@ -10,7 +10,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// A number with one of these units, as scenarios/reader/quantity.cpp takes it.
+/// A number with one of these units, as scenarios/values/quantity.cpp takes it.
 ordered_json quantity(const char* units) {
     return {
         {"type", "string"},

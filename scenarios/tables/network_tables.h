@@ -1,0 +1,32 @@
+#pragma once
+// The network between Linux boards and other computers: [network], [[host]].
+
+#include "scenarios/description/scenario.h"
+#include "scenarios/values/reader.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::scenarios {
+
+/// To be read when all robots have been.
+void read_network(Reader& top, Scenario& scenario);
+
+/// A computer of the network: its name and its address, as text.
+struct NetworkComputer {
+    std::string name;
+    std::string address;
+};
+/// Robots that have a Linux board, and hosts, in their order. Without [network] none.
+std::vector<NetworkComputer> computers_of(const Scenario& scenario);
+
+/// The key `address` of a computer, empty if it is absent.
+std::string read_network_address(Reader& reader);
+
+/// Bits a second of "11 Mbit/s"; nothing for what is no rate.
+std::optional<double> parse_rate(std::string_view text);
+
+}  // namespace puckloop::scenarios

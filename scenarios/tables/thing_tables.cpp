@@ -1,0 +1,122 @@
+#include "scenarios/tables/thing_tables.h"
+
+#include "scenarios/values/png_floor.h"
+
+#include <fmt/format.h>
+
+namespace puckloop::scenarios {
+
+namespace {
+
+void read_centre(Reader& reader, double& x, double& y) {
+    const auto centre = reader.quantities("centre", Dimension::Length, 2);
+    x = centre[0];
+    y = centre[1];
+}
+
+/// mass makes a thing movable; without it the thing is fixed.
+template <typename Item>
+void read_mass(Reader& reader, Item& item) {
+    const auto mass = reader.optional_quantity("mass", Dimension::Mass);
+    item.movable = mass.has_value();
+    if (mass) item.mass = *mass;
+}
+
+}  // namespace
+
+void read_wall(Reader& reader, physics::Wall& wall) {
+    const auto from = reader.quantities("from", Dimension::Length, 2);
+    const auto to = reader.quantities("to", Dimension::Length, 2);
+    wall.from = {from[0], from[1]};
+    wall.to = {to[0], to[1]};
+    wall.thickness = reader.quantity("thickness", Dimension::Length, wall.thickness);
+    wall.height = reader.quantity("height", Dimension::Length, wall.height);
+    wall.reflectivity = reader.quantity("reflectivity", Dimension::Ratio, wall.reflectivity);
+}
+
+void read_box(Reader& reader, physics::Box& box) {
+    read_centre(reader, box.x, box.y);
+    box.heading = reader.quantity("heading", Dimension::Angle, 0.0);
+    const auto size = reader.quantities("size", Dimension::Length, 3);
+    box.length = size[0];
+    box.width = size[1];
+    box.height = size[2];
+    read_mass(reader, box);
+    box.reflectivity = reader.quantity("reflectivity", Dimension::Ratio, box.reflectivity);
+}
+
+void read_cylinder(Reader& reader, physics::Cylinder& cylinder) {
+    read_centre(reader, cylinder.x, cylinder.y);
+    cylinder.radius = reader.quantity("radius", Dimension::Length);
+    cylinder.height = reader.quantity("height", Dimension::Length, cylinder.height);
+    read_mass(reader, cylinder);
+    cylinder.reflectivity = reader.quantity("reflectivity", Dimension::Ratio, cylinder.reflectivity);
+}
+
+void read_lamp(Reader& reader, physics::Lamp& lamp) {
+    read_centre(reader, lamp.x, lamp.y);
+    lamp.height = reader.quantity("height", Dimension::Length, lamp.height);
+    lamp.intensity = reader.quantity("intensity", Dimension::Ratio, lamp.intensity);
+}
+
+void read_speaker(Reader& reader, physics::Speaker& speaker) {
+    const auto position = reader.quantities("position", Dimension::Length, 2);
+    speaker.x = position[0];
+    speaker.y = position[1];
+    speaker.height = reader.quantity("height", Dimension::Length, speaker.height);
+    speaker.level = reader.quantity("level", Dimension::Number);
+    speaker.on = reader.quantity("on", Dimension::Time, speaker.on);
+    const double duration = reader.quantity("duration", Dimension::Time, 0.0);
+    speaker.off =
+        reader.quantity("off", Dimension::Time, duration > 0.0 ? speaker.on + duration : speaker.off);
+    if (duration > 0.0 && reader.has("off")) reader.fail("off", "duration is given as well", "one of them");
+    speaker.every = reader.quantity("every", Dimension::Time, 0.0);
+    constexpr std::int64_t kMost = 1'000'000;
+    speaker.times = static_cast<std::uint64_t>(reader.integer("times", 0, 0, kMost));
+    const std::string wave = reader.text("wave", "none");
+    if (wave != "none" && wave != "noise")
+        reader.fail("wave", fmt::format("there is no wave '{}'", wave), "noise or none; a tone by tone");
+    speaker.wave = wave == "noise";
+    speaker.tone = reader.quantity("tone", Dimension::Frequency, 0.0);
+    speaker.sweep_to = reader.quantity("sweep_to", Dimension::Frequency, 0.0);
+    const bool ends = duration > 0.0 || reader.has("off");
+    const auto needs = [&](const char* key, bool given, const char* other, bool there) {
+        if (given && !there) reader.fail(key, fmt::format("has no meaning without {}", other), other);
+    };
+    needs("sweep_to", speaker.sweep_to > 0.0, "tone", speaker.tone > 0.0);
+    needs("sweep_to", speaker.sweep_to > 0.0, "duration", ends);
+    needs("every", speaker.every > 0.0, "duration", ends);
+    needs("times", speaker.times > 0, "every", speaker.every > 0.0);
+}
+
+void read_patch(Reader& reader, physics::Patch& patch) {
+    read_centre(reader, patch.x, patch.y);
+    patch.heading = reader.quantity("heading", Dimension::Angle, 0.0);
+    const std::string image = reader.text("image", "");
+    patch.grey = image.empty() ? reader.quantity("grey", Dimension::Ratio) : 0.0;
+    if (!image.empty()) {
+        for (const char* other : {"grey", "shape", "radius"})
+            if (reader.has(other))
+                reader.fail(other, fmt::format("a patch with an image has no {}", other),
+                            "image, centre, size, heading, stretch");
+        const auto size = reader.quantities("size", Dimension::Length, 2);
+        patch.length = size[0];
+        patch.width = size[1];
+        patch.image = read_png(reader.folder() / image);
+        const bool stretch = reader.flag("stretch", false);
+        if (const std::string problem = misfit_of(patch.image, patch.length, patch.width);
+            !stretch && !problem.empty())
+            reader.fail("size", problem, "the image's proportions, or stretch = true");
+        return;
+    }
+    if (reader.choice("shape", "rectangle", {"rectangle", "disc"}) == "disc") {
+        patch.shape = physics::Patch::Shape::Disc;
+        patch.radius = reader.quantity("radius", Dimension::Length);
+    } else {
+        const auto size = reader.quantities("size", Dimension::Length, 2);
+        patch.length = size[0];
+        patch.width = size[1];
+    }
+}
+
+}  // namespace puckloop::scenarios

@@ -1,0 +1,17 @@
+#pragma once
+// One thing in the world from its table: [[wall]], [[box]], [[cylinder]], [[lamp]], [[speaker]],
+// [[floor_patch]], or what an event adds. Names and places are the caller's.
+
+#include "physics/description/description.h"
+#include "scenarios/values/reader.h"
+
+namespace puckloop::scenarios {
+
+void read_wall(Reader& reader, physics::Wall& wall);
+void read_box(Reader& reader, physics::Box& box);
+void read_cylinder(Reader& reader, physics::Cylinder& cylinder);
+void read_lamp(Reader& reader, physics::Lamp& lamp);
+void read_speaker(Reader& reader, physics::Speaker& speaker);
+void read_patch(Reader& reader, physics::Patch& patch);
+
+}  // namespace puckloop::scenarios
