@@ -227,7 +227,7 @@ struct Scenario {
     std::optional<physics::TrackerSpec> tracker{};    ///< there whenever a mission program is
     std::vector<cosim::FaultSpec> faults;
     std::vector<Expectation> expectations{};
-    std::vector<std::string> allow{};      ///< failures that do not fail the run (allowed_failures.h)
+    std::vector<std::string> allow{};      ///< failures that do not fail the run (tables/allowed_failures.h)
     std::vector<std::string> not_taken{};  ///< of an ARGoS experiment: "line 7: ...", what is otherwise here
     std::vector<std::filesystem::path> files{};  ///< that it was read from, its own first
     std::vector<std::string> ignored{};  ///< an overlay's [measurement]: of the measuring chain, not of a run

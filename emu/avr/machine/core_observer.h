@@ -1,5 +1,5 @@
 #pragma once
-// What can happen to a core, who is told, and what it leaves to others.
+// What can happen to a core, who hears of it, and what it leaves to others.
 
 #include "emu/avr/machine/interrupts.h"
 

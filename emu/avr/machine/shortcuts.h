@@ -1,5 +1,5 @@
 #pragma once
-// What the machine tells the rooms above it that save executing instructions one by one. They know the
+// What the machine asks of the rooms above it that save executing instructions one by one. They know the
 // machine; of them it knows these calls.
 
 #include <cstdint>

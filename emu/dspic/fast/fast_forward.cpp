@@ -220,6 +220,7 @@ bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     known.plan.used = true;
     ++m.skip->skips;
     m.skip->skipped_cycles += skip.arrival - arrival;
+    known.plan.gained += skip.arrival - arrival;
     m.skip->passed_services += skip.services;
     FastWork& work = m.skip->work;
     work.loop_instructions += skip.iterations * known.plan.instructions;

@@ -151,6 +151,7 @@ bool advance_in_loop(Machine& m) {
         m.waits.stays[static_cast<std::size_t>(m.waits.level)].last = head - table.branch()->cycles;
     ++m.skip->skips;
     m.skip->skipped_cycles += now - m.st.cycle;
+    *table.gained += now - m.st.cycle;
     m.st.cycle = now;
     if (!ends) position.op = table.places[to].op;
     return true;

@@ -178,6 +178,7 @@ bool others_inside(const LoopTrace& trace) {
 void make_table(Machine& m, IdleLoops::Branch& known) {
     ++m.skip->work.loop_tables;
     if (!others_inside(known.trace)) known.trace.iterations = 0;
+    known.table.gained = &known.plan.gained;
     TableMaker(m, known.plan, known.trace, known.table).run();
 }
 

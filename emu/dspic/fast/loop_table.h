@@ -45,6 +45,7 @@ struct LoopTable {
         std::uint16_t value = 0;
     };
     const LoopTrace* trace = nullptr;     ///< null: there is no table
+    std::uint64_t* gained = nullptr;      ///< LoopPlan::gained of its plan
     Cycle cycles = 0;                     ///< of an iteration
     std::uint32_t keep = 0;               ///< what stays of Machine::watch over an iteration
     std::uint32_t uses = 0;               ///< pointers that must have been set (upper half of Op::uses)

@@ -1,5 +1,5 @@
 #pragma once
-// What can happen to a core, and who is told.
+// What can happen to a core, and who hears of it.
 
 #include "emu/dspic/machine/event_queue.h"
 #include "emu/dspic/machine/interrupts.h"
