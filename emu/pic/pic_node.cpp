@@ -1,37 +1,27 @@
 #include "emu/pic/pic_node.h"
 
 #include "emu/board/chip_json.h"
-#include "emu/board/fault_parts.h"
 #include "emu/camera/frame_log.h"
-#include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace puckloop::pic {
 
 namespace {
-
-constexpr int kI2cUnit = 1;
-constexpr cosim::Time kClocksToAnswer = 8;
 constexpr std::uint8_t kNobody = 0xFF;  // the bus at rest
-
-int uart_unit(cosim::PortIndex port) {
-    return port == PicNode::kUart1 ? 1 : 2;
-}
-
 }  // namespace
 
 PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
-    : options_(options),
-      ports_{{"uart1", cosim::PortKind::Uart},
-             {"uart2", cosim::PortKind::Uart},
-             {"i2c", cosim::PortKind::I2c},
-             {"world", cosim::PortKind::Signals}},
-      board_(options.board, *this),
-      log_(options.log, image) {
+    : DspicNode(options.board, static_cast<BoardListener&>(*this),
+                {{"uart1", cosim::PortKind::Uart},
+                 {"uart2", cosim::PortKind::Uart},
+                 {"i2c", cosim::PortKind::I2c},
+                 {"world", cosim::PortKind::Signals}},
+                options.resets, options.log, image),
+      options_(options),
+      i2c_times_(options.fastest_i2c_hertz) {
     if (options.ircom) ports_.push_back({"ir", cosim::PortKind::Signals});
     can_.add(options.board.can, ports_);
     if (options.i2c_slave) {
@@ -50,33 +40,7 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
     chip_options.fosc = options.fosc;
     chip_options.errata = options.board.errata;
     chip_ = std::make_unique<dspic::Chip>(dspic::dspic30f6014a(), board_, chip_options);
-    chip_->set_skipping(options.skip_idle);
-    chip_->load(image);
-    chip_->power_on();
-    if (options.faults.empty()) return;
-    chip_faults_.emplace(*chip_);
-    faults_ = board::make_faults(options.faults,
-                                 {*chip_faults_, static_cast<chip::BoardAccess&>(*this),
-                                  board_.analog_faults(), chip_->clock(), options.board.crystal_ppm},
-                                 board::symbols_of(image));
-}
-
-void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
-                      std::vector<cosim::Message>& outbox) {
-    outbox_ = &outbox;
-    for (const cosim::Message& message : inbox) {
-        press_reset(message.time, true);
-        run_faults(message.time, true);
-        run_until(message.time);
-        receive(message);
-    }
-    // A press at `until` itself belongs to the next grant: what this one sends must not depend on the cut.
-    press_reset(until, false);
-    run_faults(until, false);
-    run_until(until);
-    settle(until);
-    granted_ = until;
-    outbox_ = nullptr;
+    switch_on(image, options.skip_idle, options.faults);
 }
 
 /// Steps due before `until` are sent now; one that is due later may still be undone by an instruction.
@@ -85,111 +49,58 @@ void PicNode::settle(cosim::Time until) {
     if (next > 0) board_.settle(next - 1);
 }
 
-void PicNode::press_reset(cosim::Time until, bool inclusive) {
-    while (next_reset_ < options_.resets.size()) {
-        const cosim::Time time = options_.resets[next_reset_];
-        if (time > until || (time == until && !inclusive)) return;
-        run_faults(time, false);
-        run_until(time);
-        chip_->mclr();
-        ++next_reset_;
-    }
-}
-
-void PicNode::run_faults(cosim::Time until, bool inclusive) {
-    board::act_until(faults_.get(), until, inclusive, [this](cosim::Time time) { run_until(time); });
-}
-
-void PicNode::run_until(cosim::Time until) {
-    while (log_.next_look() <= until) {
-        run_chip(log_.next_look());
-        settle(log_.next_look());
-        log_.look(*chip_);
-    }
-    run_chip(until);
-}
-
-void PicNode::run_chip(cosim::Time until) {
-    if (options_.i2c_linked) {
-        board::run_past_faults(*chip_, faults_.get(), until);
-        return;
-    }
+void PicNode::run_board(cosim::Time until) {
+    if (options_.i2c_linked) return DspicNode::run_board(until);
     while (chip_->now() < until) {
         const cosim::Time step = std::min(until, std::max(bus_.due(), chip_->now()));
-        if (step > chip_->now()) board::run_past_faults(*chip_, faults_.get(), step);
+        if (step > chip_->now()) DspicNode::run_board(step);
         if (bus_.due() <= chip_->now()) chip_->i2c_answer(kI2cUnit, bus_.take());
     }
 }
 
 void PicNode::receive(const cosim::Message& message) {
     if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) {
-        const int unit = uart_unit(message.port);
-        log_.arrived(unit, *frame, message.time, chip_->uart_enabled(unit));
-        chip_->uart_receive(unit, *frame);
+        receive_uart(message, *frame);
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         if (is_camera_bus(message.port)) return camera_phase(*phase, message.time);
-        if (is_slave(message.port)) return slave_phase(*phase, message.time);
+        if (is_slave(message.port))
+            return chip_->i2c_slave_phase(kI2cUnit, i2c_times_.held(*phase, message.time));
         chip_->i2c_answer(kI2cUnit, *phase);
     } else if (const auto* can = std::get_if<cosim::CanMessage>(&message.payload)) {
-        chip_->can_news(can_.unit_of(message.port), *can);
+        receive_can(message, *can);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
-        if (options_.camera && message.port == camera_port())
-            return options_.scenery->change(signal->id, signal->value);
-        const dspic::Cycle now = chip_->clock().first_cycle_at(message.time);
-        if (signal->id == kResetButton && signal->value > board_.signal(kResetButton)) chip_->mclr();
-        if (const auto port = board_.set_signal(signal->id, signal->value, now)) chip_->pins_changed(*port);
-        if (signal->id == kBatteryVoltage) chip_->supply_changed();
+        receive_signal(message, *signal);
     }
 }
 
-cosim::Time PicNode::fastest_i2c_period() const {
-    return static_cast<cosim::Time>(
-        std::llround(static_cast<double>(cosim::kSecond) / options_.fastest_i2c_hertz));
-}
-
-/// The bus hands a phase on half a clock late at most.
-cosim::Time PicNode::slave_lookahead() const {
-    return kClocksToAnswer * fastest_i2c_period() - fastest_i2c_period() / 2;
-}
-
-/// Holds what lookahead() guarantees: no answer before that long after the phase came in. A bus that passes a
-/// phase on late, or a master faster than the fastest, moves the phase.
-void PicNode::slave_phase(cosim::I2cPhase phase, cosim::Time now) {
-    if (phase.kind != cosim::I2cPhaseKind::Stop && phase.kind != cosim::I2cPhaseKind::Acknowledge) {
-        phase.clock_period = std::max(phase.clock_period, fastest_i2c_period());
-        phase.start = std::max(phase.start, now + slave_lookahead() - kClocksToAnswer * phase.clock_period);
-    }
-    chip_->i2c_slave_phase(kI2cUnit, phase);
+void PicNode::receive_signal(const cosim::Message& message, const cosim::Signal& signal) {
+    if (options_.camera && message.port == camera_port())
+        return options_.scenery->change(signal.id, signal.value);
+    const dspic::Cycle now = chip_->clock().first_cycle_at(message.time);
+    if (signal.id == kResetButton && signal.value > board_.signal(kResetButton)) chip_->mclr();
+    if (const auto port = board_.set_signal(signal.id, signal.value, now)) chip_->pins_changed(*port);
+    if (signal.id == kBatteryVoltage) chip_->supply_changed();
 }
 
 void PicNode::i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) {
-    if (!options_.i2c_slave) return;
-    outbox_->push_back({board::reached(*chip_, faults_.get(), now), slave_port_, answer});
-}
-
-cosim::Time PicNode::earliest_answer() const {
-    const cosim::Time earliest = chip_->earliest_i2c_slave_answer(kI2cUnit);
-    return std::max(granted_, faults_ && earliest != cosim::kNever
-                                  ? std::min(earliest, faults_->earliest(granted_))
-                                  : earliest);
+    if (options_.i2c_slave) outbox_->push_back({reached(now), slave_port_, answer});
 }
 
 /// The bus reports a phase half a clock before the answer is due: the camera is prompt
 /// (cosim/i2c/i2c_bus.h).
 cosim::Time PicNode::camera_lookahead() const {
-    return fastest_i2c_period() / 2;
+    return i2c_times_.fastest_period() / 2;
 }
 
 cosim::Time PicNode::lookahead(cosim::PortIndex port) const {
     if (is_camera_bus(port)) return camera_lookahead();
-    const bool idle = is_slave(port) && chip_->earliest_i2c_slave_answer(kI2cUnit) == cosim::kNever;
-    return idle ? slave_lookahead() : 0;
+    return is_slave(port) && !answers() ? i2c_times_.lookahead() : 0;
 }
 
 /// The camera never stretches: its answer is known at once, and due when the eighth clock ends.
 void PicNode::camera_phase(const cosim::I2cPhase& phase, cosim::Time now) {
-    const cosim::Time due =
-        std::max(now + camera_lookahead(), phase.start + kClocksToAnswer * phase.clock_period);
+    const cosim::Time due = std::max(
+        now + camera_lookahead(), phase.start + board::I2cDeviceTimes::kClocksToAnswer * phase.clock_period);
     const dspic::Cycle written = chip_->clock().first_cycle_at(due + phase.clock_period);
     const std::optional<cosim::I2cPhase> answer = board_.camera_i2c(phase, written);
     if (phase.kind == cosim::I2cPhaseKind::Stop) return;
@@ -211,11 +122,6 @@ cosim::Time PicNode::earliest_output(cosim::PortIndex port) const {
     return granted_;
 }
 
-std::optional<cosim::Time> PicNode::begun(cosim::PortIndex port) const {
-    if (port != kUart1 && port != kUart2) return std::nullopt;
-    return chip_->uart_begun(uart_unit(port));
-}
-
 void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
     const cosim::Time time = chip_->clock().time_of(now);
     log_.signal_changed(id, value, time);
@@ -224,17 +130,10 @@ void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
         outbox_->push_back({time, kIr, cosim::Signal{id, value}});
 }
 
-void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
-    const cosim::Time stop_bit = protocols::stop_bit_start(frame);
-    log_.sent(unit, frame, stop_bit);
-    const cosim::Time time = board::reached(*chip_, faults_.get(), stop_bit);
-    outbox_->push_back({time, unit == 1 ? kUart1 : kUart2, frame});
-}
-
 void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     if (unit != kI2cUnit) return;
     if (options_.i2c_linked) {
-        outbox_->push_back({board::reached(*chip_, faults_.get(), phase.start), kI2c, phase});
+        outbox_->push_back({reached(phase.start), kI2c, phase});
         return;
     }
     if (phase.kind == cosim::I2cPhaseKind::Acknowledge) return;  // nobody is asked
@@ -251,7 +150,7 @@ void PicNode::line_pulled_low(dspic::Cycle now) {
     constexpr cosim::Time kBit = 8'680'556;  // ps: 115200 baud
     frame.bit_period = kBit;
     frame.is_break = 1;
-    uart_sent(1, frame);
+    send_uart(1, frame);
 }
 
 void PicNode::step_lost(int motor, dspic::Cycle now) {
@@ -270,44 +169,6 @@ void PicNode::set_battery(std::optional<double> volts) {
 
 void PicNode::set_motor(int motor, std::uint8_t open, bool stalled) {
     board_.set_held(motor, open != 0 || stalled, message_cycle());
-}
-
-void PicNode::can_to_bus(int unit, const cosim::CanMessage& message) {
-    outbox_->push_back({board::reached(*chip_, faults_.get(), message.start), can_.port_of(unit), message});
-}
-
-void PicNode::state(StateWriter& archive) const {
-    board::save_node(archive, granted_, bus_, board_, *chip_, log_);
-    board::save_faults(archive, faults_.get());
-}
-
-void PicNode::state(StateReader& archive) {
-    board::load_node(archive, granted_, bus_, board_, *chip_, log_);
-    // A press at the very time of the state is still to come.
-    const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
-    next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
-    board::load_faults(archive, faults_, granted_, [this] {
-        chip_faults_.emplace(*chip_);
-        return std::make_unique<chip::BoardFaults>(std::vector<cosim::CarriedFault>{}, *chip_faults_,
-                                                   static_cast<chip::BoardAccess&>(*this), chip::Symbols{},
-                                                   options_.board.crystal_ppm);
-    });
-}
-
-void PicNode::state(CheckpointWriter& archive) const {
-    board::save_node(archive, granted_, bus_, board_, *chip_, log_);
-    archive(next_reset_);
-    if (faults_) archive(*faults_);
-}
-
-void PicNode::state(CheckpointReader& archive) {
-    archive(granted_, bus_, board_, *chip_, log_, next_reset_);
-    if (faults_) archive(*faults_);
-}
-
-void PicNode::add_work(cosim::WorkCounts& counts) const {
-    chip_->add_work(counts);
-    counts.emplace_back("bytes copied for going back", mark_.bytes());
 }
 
 std::string PicNode::finish() {

@@ -1,21 +1,17 @@
 #pragma once
 // The e-puck main board as a node of a run: chip, board, and the ports where links attach.
 
-#include "cosim/core/stateful_node.h"
-#include "emu/board/node_state.h"
+#include "emu/board/dspic_node.h"
+#include "emu/board/i2c_device.h"
 #include "emu/board/nvm_file.h"
-#include "emu/chip/faults/board_faults.h"
-#include "emu/dspic/chip/chip_faults.h"
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
 #include "emu/pic/empty_bus.h"
 #include "emu/pic/pic_log.h"
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace puckloop::pic {
@@ -45,14 +41,11 @@ struct PicNodeOptions {
     std::vector<cosim::CarriedFault> faults{};   ///< of this board
 };
 
-class PicNode : public cosim::StatefulNode,
-                public cosim::CountsWork,
-                private BoardListener,
-                private chip::BoardAccess {
+class PicNode : private BoardListener, public board::DspicNode<PicNode, Board, PicLog> {
+    friend board::BoardNode<PicNode>;
+    friend board::DspicNode<PicNode, Board, PicLog>;
+
   public:
-    static constexpr cosim::PortIndex kUart1 = 0;
-    static constexpr cosim::PortIndex kUart2 = 1;
-    static constexpr cosim::PortIndex kI2c = 2;
     static constexpr cosim::PortIndex kWorld = 3;
     static constexpr cosim::PortIndex kIr = 4;  ///< if `ircom`: pulses out, ir_light in
 
@@ -66,63 +59,32 @@ class PicNode : public cosim::StatefulNode,
     /// Throws InputError if the image does not fit the chip, or a fault neither.
     PicNode(const image::Image& image, const PicNodeOptions& options);
 
-    std::string_view name() const override { return options_.board.name; }
-    std::span<const cosim::Port> ports() const override { return ports_; }
-    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
-                 std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
-    std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
     std::string finish() override;
-    void add_work(cosim::WorkCounts& counts) const override;
-
-    void state(StateWriter& archive) const override;
-    void state(StateReader& archive) override;
-    void state(CheckpointWriter& archive) const;
-    void state(CheckpointReader& archive);
     cosim::Rewindable* rewindable() override { return &mark_; }
-    void renew_random_streams() override { board_.renew_random_streams(); }
-
-    dspic::Chip& chip() { return *chip_; }
-    /// The end of the last advance.
-    cosim::Time granted() const { return granted_; }
-    /// A pulse on the reset pin where the chip is: between two advances, or before an instruction
-    /// (chip::Instrument). What leaves at once goes to `outbox`.
-    void press_reset(std::vector<cosim::Message>& outbox) {
-        auto* const before = std::exchange(outbox_, &outbox);
-        chip_->mclr();
-        outbox_ = before;
-    }
-    Board& board() { return board_; }
 
   private:
-    void run_until(cosim::Time until);
-    void run_chip(cosim::Time until);
+    static constexpr int kI2cUnit = 1;
+
+    void run_board(cosim::Time until);
     void settle(cosim::Time until);
-    /// Presses the reset button where it is due before (or at) `until`.
-    void press_reset(cosim::Time until, bool inclusive);
-    /// Lets the faults act that are due before (or at) `until`.
-    void run_faults(cosim::Time until, bool inclusive);
     void receive(const cosim::Message& message);
+    void receive_signal(const cosim::Message& message, const cosim::Signal& signal);
     bool is_camera_bus(cosim::PortIndex port) const {
         return options_.camera && options_.i2c_linked && port == camera_bus_port();
     }
     bool is_slave(cosim::PortIndex port) const { return options_.i2c_slave && port == slave_port_; }
-    cosim::Time fastest_i2c_period() const;
-    cosim::Time slave_lookahead() const;
-    cosim::Time earliest_answer() const;
-    /// A phase for the chip as a device of the bus.
-    void slave_phase(cosim::I2cPhase phase, cosim::Time now);
     cosim::Time camera_lookahead() const;
     /// A phase for the camera as a device of the bus.
     void camera_phase(const cosim::I2cPhase& phase, cosim::Time now);
 
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
-    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    void uart_sent(int unit, const cosim::UartFrame& frame) override { send_uart(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
     void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) override;
-    void can_to_bus(int unit, const cosim::CanMessage& message) override;
+    void can_to_bus(int unit, const cosim::CanMessage& message) override { send_can(unit, message); }
     void step_lost(int motor, dspic::Cycle now) override;
     void line_pulled_low(dspic::Cycle now) override;
     void edges_moved(dspic::Cycle at) override { chip_->edges_moved(at); }
@@ -131,18 +93,13 @@ class PicNode : public cosim::StatefulNode,
     void set_ambient(const chip::AmbientShares& shares) override { board_.set_ambient(shares); }
     void set_motor(int motor, std::uint8_t open, bool stalled) override;
     dspic::Cycle message_cycle() const { return chip_->clock().first_cycle_at(chip_->now()); }
+    EmptyBus& own() { return bus_; }
+    const EmptyBus& own() const { return bus_; }
 
     PicNodeOptions options_;
-    std::vector<cosim::Port> ports_;
     cosim::PortIndex slave_port_ = 0;
-    board::CanPorts can_;
-    Board board_;
-    std::unique_ptr<dspic::Chip> chip_;
+    board::I2cDeviceTimes i2c_times_;
     EmptyBus bus_;
-    PicLog log_;
-    std::optional<dspic::ChipFaults> chip_faults_;
-    std::unique_ptr<chip::BoardFaults>
-        faults_;  ///< null: none was asked for, nor was there any in a loaded state
     /// What goes back beside chip and board.
     struct Followers {
         PicLog& log;
@@ -162,9 +119,6 @@ class PicNode : public cosim::StatefulNode,
     };
     Followers followers_{log_};
     board::NodeMark<PicNode, dspic::Chip, Followers> mark_{*this, chip_, followers_};
-    std::vector<cosim::Message>* outbox_ = nullptr;
-    cosim::Time granted_ = 0;
-    std::size_t next_reset_ = 0;
 };
 
 }  // namespace puckloop::pic

@@ -1,12 +1,9 @@
 #pragma once
 // The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
 
-#include "cosim/core/stateful_node.h"
-#include "emu/board/node_state.h"
+#include "emu/board/dspic_node.h"
+#include "emu/board/i2c_device.h"
 #include "emu/board/nvm_file.h"
-#include "emu/chip/faults/board_faults.h"
-#include "emu/dspic/chip/chip.h"
-#include "emu/dspic/chip/chip_faults.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_log.h"
@@ -14,7 +11,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace puckloop::rab {
@@ -30,84 +26,44 @@ struct RabNodeOptions {
     std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class RabNode : public cosim::StatefulNode,
-                public cosim::CountsWork,
-                private BoardListener,
-                private chip::BoardAccess {
+class RabNode : private BoardListener, public board::DspicNode<RabNode, Board, RabLog> {
+    friend board::BoardNode<RabNode>;
+    friend board::DspicNode<RabNode, Board, RabLog>;
+
   public:
-    static constexpr cosim::PortIndex kUart1 = 0;
-    static constexpr cosim::PortIndex kUart2 = 1;
-    static constexpr cosim::PortIndex kI2c = 2;    ///< a device port of cosim/i2c/i2c_bus.h
+    // kI2c is a device port of cosim/i2c/i2c_bus.h.
     static constexpr cosim::PortIndex kIr = 3;     ///< signals: light
     static constexpr cosim::PortIndex kWorld = 4;  ///< signals: the robot's battery
 
     /// Throws InputError if the image does not fit the chip, or a fault neither.
     RabNode(const image::Image& image, const RabNodeOptions& options);
 
-    std::string_view name() const override { return options_.board.name; }
-    std::span<const cosim::Port> ports() const override { return ports_; }
-    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
-                 std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
-    std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, emission, I2C and UART counters.
     std::string finish() override;
-    void add_work(cosim::WorkCounts& counts) const override;
-
-    void state(StateWriter& archive) const override;
-    void state(StateReader& archive) override;
-    void state(CheckpointWriter& archive) const;
-    void state(CheckpointReader& archive);
     cosim::Rewindable* rewindable() override { return &mark_; }
-    void renew_random_streams() override { board_.renew_random_streams(); }
-
-    dspic::Chip& chip() { return *chip_; }
-    /// The end of the last advance.
-    cosim::Time granted() const { return granted_; }
-    /// A pulse on the reset pin where the chip is: between two advances, or before an instruction
-    /// (chip::Instrument). What leaves at once goes to `outbox`.
-    void press_reset(std::vector<cosim::Message>& outbox) {
-        auto* const before = std::exchange(outbox_, &outbox);
-        chip_->mclr();
-        outbox_ = before;
-    }
-    Board& board() { return board_; }
-    const RabLog& log() const { return log_; }
 
   private:
-    void run_until(cosim::Time until);
-    void run_faults(cosim::Time until, bool inclusive);
+    static constexpr int kI2cUnit = rab::kI2cUnit;
+
     void settle(cosim::Time until);
+    void receive(const cosim::Message& message);
+    void receive_signal(const cosim::Signal& signal, cosim::Time now);
+    void receive_i2c(const cosim::I2cPhase& phase, cosim::Time now);
     void set_carrier(std::uint16_t receivers) override;
     void set_sag(double volts) override;
     void set_battery(std::optional<double> volts) override;
     /// The demodulator sees a carrier of the medium's, or one of a fault.
     void show_carrier(int receiver, cosim::Time now);
-    void receive(const cosim::Message& message);
-    void begin_i2c(cosim::I2cPhase phase, cosim::Time now);
-    cosim::Time lookahead_when_idle() const;
 
     void signal_changed(SignalId id, double value, cosim::Time now) override;
     void emitters_changed(std::uint16_t on, cosim::Time now) override { log_.emitters(on, now); }
-    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    void uart_sent(int unit, const cosim::UartFrame& frame) override { send_uart(unit, frame); }
     void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
-    void can_to_bus(int unit, const cosim::CanMessage& message) override;
+    void can_to_bus(int unit, const cosim::CanMessage& message) override { send_can(unit, message); }
 
-    RabNodeOptions options_;
-    cosim::Time fastest_period_;
-    std::vector<cosim::Port> ports_;
-    board::CanPorts can_;
-    Board board_;
-    std::unique_ptr<dspic::Chip> chip_;
-    RabLog log_;
-    std::optional<dspic::ChipFaults> chip_faults_;
-    std::unique_ptr<chip::BoardFaults>
-        faults_;  ///< null: none was asked for, nor was there any in a loaded state
-    board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
-    std::vector<cosim::Message>* outbox_ = nullptr;
-    cosim::Time granted_ = 0;
     struct Own {
         std::uint64_t master_phases = 0;
         // Only kept while there are faults; bit 0 is receiver 1.
@@ -118,7 +74,14 @@ class RabNode : public cosim::StatefulNode,
         void state(Archive& archive) {
             archive(master_phases, seen, foreign);
         }
-    } own_;
+    };
+    Own& own() { return own_; }
+    const Own& own() const { return own_; }
+
+    RabNodeOptions options_;
+    board::I2cDeviceTimes i2c_times_;
+    Own own_;
+    board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
 };
 
 }  // namespace puckloop::rab

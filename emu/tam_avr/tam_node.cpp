@@ -1,6 +1,5 @@
 #include "emu/tam_avr/tam_node.h"
 
-#include "emu/board/fault_parts.h"
 #include "emu/tam_avr/fuse_check.h"
 #include "emu/tam_avr/tam_json.h"
 #include "protocols/uart_sampling.h"
@@ -8,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <utility>
 
 namespace puckloop::tam {
 
@@ -33,12 +31,14 @@ std::optional<cosim::PortIndex> port_of(SignalId id) {
 }  // namespace
 
 TamNode::TamNode(const image::AvrImage& image, const TamNodeOptions& options)
-    : options_(options),
-      ports_{{"console", cosim::PortKind::Uart},
-             {"xbee", cosim::PortKind::Uart},
-             {"pins", cosim::PortKind::Signals},
-             {"world", cosim::PortKind::Signals},
-             {"ir", cosim::PortKind::Signals}},
+    : BoardNode(options.board.name,
+                {{"console", cosim::PortKind::Uart},
+                 {"xbee", cosim::PortKind::Uart},
+                 {"pins", cosim::PortKind::Signals},
+                 {"world", cosim::PortKind::Signals},
+                 {"ir", cosim::PortKind::Signals}},
+                options.resets),
+      options_(options),
       log_(options.log, image, options.start),
       board_(std::make_unique<Board>(options.board, static_cast<BoardListener&>(*this))) {
     board_->chip().set_skipping(options.skip_idle);
@@ -57,59 +57,14 @@ TamNode::TamNode(const image::AvrImage& image, const TamNodeOptions& options)
                            board::symbols_of(image));
 }
 
-void TamNode::advance(Time until, std::span<const cosim::Message> inbox,
-                      std::vector<cosim::Message>& outbox) {
-    outbox_ = &outbox;
-    for (const cosim::Message& message : inbox) {
-        press_reset(message.time, true);
-        run_faults(message.time, true);
-        run_until(message.time);
-        receive(message);
-    }
-    // A press at `until` itself belongs to the next grant: what this one sends must not depend on the cut.
-    press_reset(until, false);
-    run_faults(until, false);
-    run_until(until);
-    granted_ = until;
-    outbox_ = nullptr;
-}
-
-void TamNode::press_reset(std::vector<cosim::Message>& outbox) {
-    auto* const before = std::exchange(outbox_, &outbox);
-    board_->reset_now(before != nullptr);
-    outbox_ = before;
-}
-
-void TamNode::press_reset(Time until, bool inclusive) {
-    while (next_reset_ < options_.resets.size()) {
-        const Time time = options_.resets[next_reset_];
-        if (time > until || (time == until && !inclusive)) return;
-        run_faults(time, false);
-        run_until(time);
-        board_->reset_button();
-        ++next_reset_;
-    }
-}
-
-void TamNode::run_faults(Time until, bool inclusive) {
-    board::act_until(faults_.get(), until, inclusive, [this](Time time) { run_until(time); });
-}
-
 void TamNode::run_board(Time until) {
-    board_->run_until(until);
+    const Time board_until = to_board(until);
+    board_->run_until(board_until);
     if (!faults_) return;
     while (board_->powered() && board_->chip().stopped_at()) {
         faults_->arrived(from_board(board_->now()));
-        board_->run_until(until);
+        board_->run_until(board_until);
     }
-}
-
-void TamNode::run_until(Time until) {
-    while (log_.next_look() <= until) {
-        run_board(to_board(log_.next_look()));
-        log_.look(board_->chip());
-    }
-    run_board(to_board(until));
 }
 
 void TamNode::receive(const cosim::Message& message) {
@@ -129,8 +84,7 @@ void TamNode::receive(const cosim::Message& message) {
 
 Time TamNode::earliest_output(cosim::PortIndex /*port*/) const {
     Time next = std::max(options_.start, cosim::later(board_->wakes(), options_.start));
-    if (board_->powered() && next_reset_ < options_.resets.size())
-        next = std::min(next, options_.resets[next_reset_]);
+    if (board_->powered()) next = std::min(next, next_reset().value_or(cosim::kNever));
     if (board_->powered() && faults_) next = std::min(next, faults_->earliest(granted_));
     return std::max(granted_, next);
 }
@@ -179,9 +133,7 @@ void TamNode::state(StateReader& archive) {
     archive.part("log", log_);
     archive.check(board_->now() == to_board(granted_), "node and board at different times");
     log_.loaded(granted_);
-    // A press at the very time of the state is still to come.
-    const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
-    next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
+    find_next_reset();
     board::load_faults(archive, faults_, granted_, [this] {
         chip_faults_.emplace(board_->chip());
         return std::make_unique<chip::BoardFaults>(std::vector<cosim::CarriedFault>{}, *chip_faults_,
@@ -191,12 +143,14 @@ void TamNode::state(StateReader& archive) {
 }
 
 void TamNode::state(CheckpointWriter& archive) const {
-    archive(granted_, *board_, log_, next_reset_);
+    list_node(archive, *this);
+    archive(*board_, log_);
     if (faults_) archive(*faults_);
 }
 
 void TamNode::state(CheckpointReader& archive) {
-    archive(granted_, *board_, log_, next_reset_);
+    list_node(archive, *this);
+    archive(*board_, log_);
     if (faults_) archive(*faults_);
 }
 

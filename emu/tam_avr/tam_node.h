@@ -8,10 +8,9 @@
 //   world    out: the coloured LEDs; in: barriers, ambient light, battery
 //   ir       out: proximity_emit; in: proximity_sense
 
-#include "cosim/core/stateful_node.h"
 #include "emu/avr/chip/chip_faults.h"
+#include "emu/board/board_node.h"
 #include "emu/board/node_state.h"
-#include "emu/chip/faults/board_faults.h"
 #include "emu/image/avr_image.h"
 #include "emu/tam_avr/board.h"
 #include "emu/tam_avr/tam_log.h"
@@ -36,17 +35,15 @@ struct TamNodeOptions {
     std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class TamNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
+class TamNode : private BoardListener, public board::BoardNode<TamNode> {
+    friend board::BoardNode<TamNode>;
+
   public:
     static constexpr cosim::PortIndex kConsole = 0, kXBee = 1, kPins = 2, kWorld = 3, kIr = 4;
 
     /// The image was checked against the chip (load_avr_image). Throws RunError as TamLog does.
     TamNode(const image::AvrImage& image, const TamNodeOptions& options);
 
-    std::string_view name() const override { return options_.board.name; }
-    std::span<const cosim::Port> ports() const override { return ports_; }
-    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
-                 std::vector<cosim::Message>& outbox) override;
     /// Never, once the board is off; while its chip sleeps, what wakes it next.
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
@@ -62,23 +59,21 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     void renew_random_streams() override { board_->renew_random_streams(); }
 
     Board& board() { return *board_; }
-    /// The end of the last advance.
-    cosim::Time granted() const { return granted_; }
     /// A pulse on the reset pin where the chip is: between two advances, or before an instruction
     /// (chip::Instrument). What leaves at once goes to `outbox`.
-    void press_reset(std::vector<cosim::Message>& outbox);
+    void press_reset(std::vector<cosim::Message>& outbox) {
+        collect(outbox, [this](bool running) { board_->reset_now(running); });
+    }
 
   private:
     // The board's time begins when it is switched on.
     cosim::Time to_board(cosim::Time time) const { return time > options_.start ? time - options_.start : 0; }
     cosim::Time from_board(cosim::Time time) const { return time + options_.start; }
 
-    void run_until(cosim::Time until);
-    /// Presses the reset button where it is due before (or at) `until`.
-    void press_reset(cosim::Time until, bool inclusive);
-    void run_faults(cosim::Time until, bool inclusive);
-    /// The board to `until` in its own time; faults that wait for the program act on the way.
+    void look() { log_.look(board_->chip()); }
     void run_board(cosim::Time until);
+    void settle(cosim::Time) {}
+    void push_reset_button() { board_->reset_button(); }
     void receive(const cosim::Message& message);
 
     void signal_changed(SignalId id, double value, cosim::Time now) override;
@@ -89,17 +84,11 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     void set_ambient(const chip::AmbientShares& shares) override { board_->set_ambient(shares); }
 
     TamNodeOptions options_;
-    std::vector<cosim::Port> ports_;
     std::vector<std::string> warnings_;  // of the image
     TamLog log_;
     std::unique_ptr<Board> board_;
     std::optional<avr::ChipFaults> chip_faults_;
-    std::unique_ptr<chip::BoardFaults>
-        faults_;  ///< null: none was asked for, nor was there any in a loaded state
     board::NodeMark<TamNode, Board, TamLog> mark_{*this, board_, log_};
-    std::vector<cosim::Message>* outbox_ = nullptr;
-    cosim::Time granted_ = 0;
-    std::size_t next_reset_ = 0;
 };
 
 }  // namespace puckloop::tam
