@@ -24,7 +24,6 @@ const std::map<std::string, std::size_t> kKnown = {
     {"gap/overlay", 2},             // with gap/pipeline
     {"linuxboard/coordinator", 2},  // with its experiments
     {"linuxboard/shim/devices", 2},
-    {"linuxboard/shim/preload", 5},
 };
 
 Includes includes() {

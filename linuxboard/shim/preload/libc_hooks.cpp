@@ -5,11 +5,12 @@
 
 #include "linuxboard/shim/preload/libc_hooks.h"
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <dlfcn.h>
 #include <fcntl.h>

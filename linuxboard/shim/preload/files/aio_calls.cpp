@@ -1,9 +1,10 @@
 // POSIX asynchronous reads and writes. The C library's own have threads that wait in the host, outside of
 // simulated time; here each operation is a thread of the program.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <aio.h>
 #include <fcntl.h>

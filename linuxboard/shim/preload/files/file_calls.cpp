@@ -1,16 +1,20 @@
 // open, close, read, write and their kin.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/files/video_names.h"
-#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/descriptors/process_paths.h"
+#include "linuxboard/shim/preload/descriptors/video_names.h"
+#include "linuxboard/shim/preload/files/shared_calls.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
-#include "linuxboard/shim/preload/outside.h"
-#include "linuxboard/shim/preload/process_numbers.h"
-#include "linuxboard/shim/preload/process_paths.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/time/timers.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/outside_news.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/timers.h"
+#include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,8 +1,9 @@
 // read(), write() and the ioctls of /dev/i2c-N: checks and answers in the order of the kernel's
 // drivers/i2c/i2c-dev.c, on an adapter as drivers/i2c/busses/i2c-omap.c gives it.
 
+#include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/files/i2c_transfer.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
 
 #include <limits.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // What i2c-dev (i2c_calls.cpp) and SMBus (smbus_calls.cpp) share: messages to the adapter.
 
-#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
 
 #include <linux/i2c-dev.h>
 #include <linux/i2c.h>

@@ -2,11 +2,11 @@
 // that it has on the board. What it changes of it (owner, mode, times) is accepted and has no effect: behind
 // a device lies a file that is the whole host's.
 
-#include "linuxboard/shim/preload/files/device_numbers.h"
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/process_paths.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/descriptors/device_numbers.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/descriptors/process_paths.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 
 #include <fcntl.h>
 #include <stdio.h>

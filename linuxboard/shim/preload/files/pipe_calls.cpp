@@ -1,7 +1,8 @@
 // Pipes, socket pairs and event descriptors: what threads of the program hand each other is conducted, what
 // comes from outside is looked at.
 
-#include "linuxboard/shim/preload/outside.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <sys/eventfd.h>
 #include <sys/socket.h>

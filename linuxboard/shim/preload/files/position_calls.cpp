@@ -1,11 +1,12 @@
 // Calls that need a place in a file: a serial port has none, an I2C adapter and a camera ignore it. And calls
 // that move data without a buffer of the program, which devices do not know.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
-#include "linuxboard/shim/preload/outside.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
 #include <sys/sendfile.h>

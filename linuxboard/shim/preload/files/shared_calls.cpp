@@ -2,9 +2,15 @@
 // semaphores; and message queues. While one process waited in the host no other could run, so each call is
 // tried without waiting, once a millisecond of simulated time.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/outside.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/files/shared_calls.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/outside_news.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
+#include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
 #include <mqueue.h>

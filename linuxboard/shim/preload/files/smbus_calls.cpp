@@ -1,8 +1,9 @@
 // I2C_SMBUS: the checks of the kernel's i2c-dev.c, and the plain I2C messages that i2c-core-smbus.c makes for
 // an adapter without SMBus hardware, with the packet error code (a CRC-8) that it computes.
 
+#include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/files/i2c_transfer.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
 
 #include <cerrno>
 #include <cstring>

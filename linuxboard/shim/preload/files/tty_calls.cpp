@@ -1,10 +1,10 @@
 // termios and ioctl on the serial port and on the I2C adapter.
 
-#include "linuxboard/shim/preload/files/device_numbers.h"
-#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/descriptors/device_numbers.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
 
 #include <fcntl.h>
 #include <linux/fs.h>

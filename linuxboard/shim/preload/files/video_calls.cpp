@@ -1,11 +1,11 @@
 // Cameras: ioctl, read and mmap. The node is their driver; an ioctl's struct goes to it and comes back, the
 // frames lie in memory that both share.
 
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 
 #include <fcntl.h>
 #include <linux/videodev2.h>

@@ -1,10 +1,11 @@
 // What moves data through sockets: send, recv and their kin.
 
-#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
-#include "linuxboard/shim/preload/outside.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
 #include <limits.h>

@@ -1,9 +1,10 @@
 // The interfaces of a board on a network: `lo` and `wlan0`.
 
-#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <ifaddrs.h>
 #include <linux/sockios.h>

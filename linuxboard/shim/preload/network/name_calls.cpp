@@ -1,10 +1,10 @@
 // Names of computers: getaddrinfo() and its older kin know the computers of the run's network and no others;
 // no name server is asked.
 
-#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <arpa/inet.h>
 #include <netdb.h>

@@ -3,7 +3,7 @@
 // of the host that is connected to nothing. On a board without a network, and for other families than IPv4,
 // sockets are the host's.
 
-#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
 
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -20,11 +20,6 @@ OpenFile* socket_file(int fd);
 
 /// Names once what the network has refused, by errno; `result` and errno stay.
 std::int64_t named(std::int64_t result, const wire::SocketAddress& address);
-
-/// read(), write() and their kin on a socket, with the flags of recv() and send().
-std::int64_t read_socket(OpenFile& file, void* buffer, std::size_t size, int flags);
-std::int64_t write_socket(OpenFile& file, const void* data, std::size_t size, int flags);
-int socket_ioctl(OpenFile& file, unsigned long request, void* argument);
 
 /// What a socket's call sends, from a program's or this library's memory; `to` may be nullptr.
 std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int flags,

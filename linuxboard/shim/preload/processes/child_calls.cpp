@@ -3,14 +3,14 @@
 // Deviations: 1. vfork() copies, as fork() does. 2. Timers with a descriptor stay with the parent. 3. Flags
 // of a device's descriptor (O_NONBLOCK, the I2C address) are each process's own after fork().
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/direct_syscalls.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/host/direct_syscalls.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/time/timers.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/timers.h"
 
 #include <fcntl.h>
 #include <stdio.h>

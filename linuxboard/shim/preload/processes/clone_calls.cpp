@@ -1,11 +1,10 @@
 // Processes made otherwise than by fork(): what is a plain copy is conducted as fork() is, what shares memory
 // or descriptors with its parent is refused by name, since nobody could conduct it.
 
-#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <linux/sched.h>
 #include <sched.h>

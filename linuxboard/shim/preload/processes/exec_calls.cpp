@@ -1,13 +1,13 @@
 // exec(): the program that follows in this process goes on in simulated time, with the devices and the alarms
 // of the one before it.
 
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 #include "linuxboard/shim/wire/program_kind.h"
 
 #include <dlfcn.h>

@@ -2,8 +2,7 @@
 
 #include "linuxboard/shim/preload/processes/file_actions.h"
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/host/real.h"
 
 #include <fcntl.h>
 #include <limits.h>

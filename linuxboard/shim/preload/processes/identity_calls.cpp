@@ -2,13 +2,12 @@
 // random numbers, so they count from a fixed one; calls that take one accept those of the program's
 // processes.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/process_numbers.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -22,10 +21,6 @@
 using namespace puckloop::shim;
 
 namespace {
-/// Thread numbers beside the first thread's, which is the process's, are far from all process numbers.
-constexpr pid_t kFirstThread = 100'000;
-constexpr pid_t kThreadsOfProcess = 1024;
-
 /// A signal that would stop this process, and with it simulated time.
 bool stops_by_default(int number) {
     if (number != SIGTSTP && number != SIGTTIN && number != SIGTTOU) return number == SIGSTOP;
@@ -73,12 +68,6 @@ SHIM_EXPORT pid_t getppid() noexcept {
 }
 
 namespace puckloop::shim {
-pid_t thread_number(std::uint32_t index) {
-    return index == 0 ? own().number
-                      : kFirstThread + kThreadsOfProcess * (own().number - wire::kFirstProcess) +
-                            static_cast<pid_t>(index);
-}
-
 int signal_thread(pid_t process, pid_t thread, int number) {
     if (number < 0 || number >= NSIG) {
         errno = EINVAL;

@@ -1,8 +1,9 @@
 #include "linuxboard/shim/preload/processes/inheritance.h"
 
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/time/timers.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/timers.h"
 
 #include <fcntl.h>
 

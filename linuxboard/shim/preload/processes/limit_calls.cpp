@@ -1,12 +1,12 @@
 // Limits that a program sets for itself. Its link to the run stays within them: a process that it makes gets
 // a link of its own at the same number, which the kernel refuses beyond the limit of open files.
 
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/process_numbers.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <sys/resource.h>
 

@@ -1,9 +1,9 @@
 #include "linuxboard/shim/preload/processes/make_process.h"
 
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <signal.h>
 #include <sys/syscall.h>

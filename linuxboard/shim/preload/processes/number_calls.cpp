@@ -2,11 +2,11 @@
 // for the program's processes, and none of any other. Priorities and scheduling policies are kept here: one
 // thread runs at a time whatever they are.
 
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/process_numbers.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <sched.h>
 #include <signal.h>

@@ -1,12 +1,13 @@
 // The process as a whole: begin, end, random numbers.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/direct_syscalls.h"
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/direct_syscalls.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/processes/begin_process.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <sys/random.h>
 #include <unistd.h>

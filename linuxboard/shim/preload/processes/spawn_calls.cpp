@@ -1,12 +1,12 @@
 // posix_spawn(). Without file actions the C library makes the new process; with some, which may open or copy
 // devices, the process is a copy that does them by the calls taken over and then executes the program.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/file_actions.h"
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <fcntl.h>
 #include <limits.h>

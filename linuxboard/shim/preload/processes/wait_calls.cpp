@@ -1,11 +1,11 @@
 // Waiting for children, in simulated time.
 
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 
 #include <pthread.h>
 #include <sys/resource.h>

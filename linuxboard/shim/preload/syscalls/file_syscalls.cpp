@@ -1,8 +1,7 @@
 // System calls on descriptors: devices, pipes, waiting.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/kernel_signals.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/host/kernel_signals.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <fcntl.h>

@@ -1,8 +1,11 @@
 // FUTEX_WAIT and FUTEX_WAKE among the program's threads.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/outside_news.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <linux/futex.h>
 #include <time.h>

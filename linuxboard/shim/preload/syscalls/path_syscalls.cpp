@@ -1,8 +1,7 @@
 // System calls with a path, which may lead to a device.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <fcntl.h>

@@ -1,11 +1,11 @@
 // System calls for processes: made, replaced, ended, named. What nobody can conduct is refused by name.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/process_numbers.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <linux/sched.h>

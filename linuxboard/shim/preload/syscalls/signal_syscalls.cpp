@@ -1,9 +1,8 @@
 // System calls for signals. The kernel's sets of signals have 8 bytes, the C library's more.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/kernel_signals.h"
-#include "linuxboard/shim/preload/process_numbers.h"
-#include "linuxboard/shim/preload/program_memory.h"
+#include "linuxboard/shim/preload/host/kernel_signals.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <pthread.h>

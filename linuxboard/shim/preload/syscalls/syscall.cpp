@@ -1,9 +1,9 @@
 // syscall(): what has a function that is taken over goes to that function; what would escape simulated time
 // is refused by name; the rest is the host's.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/host/link.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <sys/syscall.h>

@@ -1,6 +1,5 @@
 // System calls for the time, timers and processor time.
 
-#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
 #include <sched.h>

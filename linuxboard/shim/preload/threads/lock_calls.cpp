@@ -3,10 +3,11 @@
 // The C library's own objects keep the state, through their try functions; only the waiting is ours.
 // Objects shared between processes are looked at every millisecond.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/outside_news.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <pthread.h>
 #include <sys/syscall.h>

@@ -1,8 +1,9 @@
 // Semaphores, barriers, pthread_once. See lock_calls.cpp.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/outside_news.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <pthread.h>
 #include <semaphore.h>

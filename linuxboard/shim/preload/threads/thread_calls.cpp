@@ -1,9 +1,9 @@
 // Threads: created, joined, detached, cancelled, ended.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/direct_syscalls.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
+#include "linuxboard/shim/preload/host/direct_syscalls.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <pthread.h>
 #include <sched.h>

@@ -1,9 +1,10 @@
 // Processor time. It is what the model charges: each call taken over costs its class (wire::Charges), and
 // computing costs nothing; waiting does not count. All of it is system time.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <pthread.h>
 #include <sys/resource.h>

@@ -2,11 +2,11 @@
 // clocks).
 
 #include "base/random.h"
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/threads/scheduler.h"
-#include "linuxboard/shim/wire/board_clock.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <sys/time.h>
 #include <sys/timex.h>
@@ -37,14 +37,6 @@ std::int64_t clock_nanoseconds(clockid_t clock) {
     return clock_origin(clock) + board_time(now()) / kNanosecond;
 }
 
-Time board_time(Time simulated) {
-    return wire::board_time(simulated, page().clock_error);
-}
-
-Time simulated_time(Time of_board) {
-    return wire::simulated_time(of_board, page().clock_error);
-}
-
 timespec timespec_of_nanoseconds(std::int64_t nanoseconds) {
     timespec out{};
     out.tv_sec = nanoseconds / kNanosecondsPerSecond;
@@ -62,13 +54,6 @@ timespec to_timespec(Time time) {
     out.tv_sec = time / kSecond;
     out.tv_nsec = time % kSecond / kNanosecond;
     return out;
-}
-
-Time time_after(Time duration) {
-    const Time start = now();
-    if (duration < 0) return start;
-    duration = simulated_time(duration);
-    return start > kNever - duration ? kNever : start + duration;
 }
 
 Time absolute_deadline(clockid_t clock, const timespec& time) {

@@ -1,12 +1,15 @@
 // alarm, setitimer, timerfd, pause and waiting for signals.
 
-#include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/files/open_file.h"
-#include "linuxboard/shim/preload/host.h"
-#include "linuxboard/shim/preload/program_memory.h"
-#include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/signal_origins.h"
-#include "linuxboard/shim/preload/time/timers.h"
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/signal_origins.h"
+#include "linuxboard/shim/preload/scheduler/timers.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 
 #include <poll.h>
 #include <signal.h>

@@ -1,0 +1,187 @@
+// epoll: devices are registered here, everything else with the host's epoll, which is then one outside
+// descriptor more. Of devices sockets can be edge-triggered, others behave as level-triggered ones then.
+
+#include "linuxboard/shim/preload/descriptors/external.h"
+#include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
+#include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/scheduler/board_clock.h"
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
+#include "linuxboard/shim/preload/waiting/poll.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/epoll.h>
+#include <sys/syscall.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+using namespace puckloop::shim;
+
+namespace {
+constexpr int kMostWatches = 1000;
+
+struct Watch {
+    int epoll_fd = -1;
+    int fd = -1;
+    epoll_event event{};
+    bool armed = false;
+    std::uint32_t seen = 0;  ///< of an edge-triggered one: its activity when it was reported
+};
+int watch_end = 0;  ///< no watch lies behind
+bool watches_outside = false;
+Watch watches[kMostWatches];
+
+Watch* find_watch(int epoll_fd, int fd) {
+    for (int i = 0; i < watch_end; ++i)
+        if (watches[i].epoll_fd == epoll_fd && watches[i].fd == fd) return &watches[i];
+    return nullptr;
+}
+
+int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) {
+    Watch* watch = find_watch(epoll_fd, fd);
+    if (operation == EPOLL_CTL_DEL) {
+        if (watch == nullptr) {
+            errno = ENOENT;
+            return -1;
+        }
+        *watch = {};
+        return 0;
+    }
+    if ((operation == EPOLL_CTL_ADD) != (watch == nullptr)) {
+        errno = watch == nullptr ? ENOENT : EEXIST;
+        return -1;
+    }
+    if (watch == nullptr) watch = find_watch(-1, -1);
+    if (watch == nullptr && watch_end < kMostWatches) watch = &watches[watch_end++];
+    if (watch == nullptr) {
+        errno = ENOSPC;
+        return -1;
+    }
+    const bool edge = (event->events & EPOLLET) != 0;
+    *watch = {epoll_fd, fd, *event, true, edge ? wire::kNeverSeen : 0};
+    return 0;
+}
+
+/// Devices that are ready in `entries` become events.
+int gather(int epoll_fd, const PollItem* entries, nfds_t count, epoll_event* events, int most) {
+    int total = 0;
+    for (nfds_t i = 0; i < count && total < most; ++i) {
+        if (entries[i].revents == 0 || entries[i].fd == epoll_fd) continue;
+        Watch* watch = find_watch(epoll_fd, entries[i].fd);
+        if (watch == nullptr) continue;
+        events[total] = watch->event;
+        events[total++].events = static_cast<std::uint32_t>(entries[i].revents);
+        if (watch->seen != 0) watch->seen = entries[i].seen;
+        if ((watch->event.events & EPOLLONESHOT) != 0) watch->armed = false;
+    }
+    return total;
+}
+/// A descriptor of the host's epoll; errno if it is another one or none.
+bool is_epoll(int fd) {
+    if (REAL(fcntl)(fd, F_GETFD) < 0) return false;
+    char path[40], target[64] = {};
+    std::snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    host_call(SYS_readlinkat, AT_FDCWD, reinterpret_cast<long>(path), reinterpret_cast<long>(target),
+              sizeof target - 1);
+    if (std::strcmp(target, "anon_inode:[eventpoll]") == 0) return true;
+    errno = EINVAL;
+    return false;
+}
+}  // namespace
+
+namespace puckloop::shim {
+void drop_watches(int fd) {
+    for (int i = 0; i < watch_end; ++i)
+        if (watches[i].fd == fd) watches[i] = {};
+}
+
+bool epoll_watches_outside() {
+    return watches_outside;
+}
+}  // namespace puckloop::shim
+
+SHIM_EXPORT int epoll_create1(int flags) noexcept {
+    const int fd = REAL(epoll_create1)(flags);
+    if (active()) mark_internal(fd);
+    return fd;
+}
+
+SHIM_EXPORT int epoll_create(int) noexcept {
+    return epoll_create1(0);
+}
+
+SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* event) noexcept {
+    if (open_file(fd) == nullptr) {
+        watches_outside = watches_outside || !is_internal(fd);
+        return REAL(epoll_ctl)(epoll_fd, operation, fd, event);
+    }
+    charge(page().charges.device);
+    epoll_event wanted{};
+    if (operation != EPOLL_CTL_DEL && !get_from_program(wanted, event)) return -1;
+    if (!is_epoll(epoll_fd)) return -1;
+    if (operation != EPOLL_CTL_ADD && operation != EPOLL_CTL_MOD && operation != EPOLL_CTL_DEL) {
+        errno = EINVAL;
+        return -1;
+    }
+    return change_watch(epoll_fd, operation, fd, &wanted);
+}
+
+static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline, const sigset_t* mask) {
+    if (most <= 0) {
+        errno = EINVAL;
+        return -1;
+    }
+    if (!is_epoll(epoll_fd)) return -1;
+    std::vector<PollItem> entries{{epoll_fd, POLLIN, 0, 0}};
+    for (int i = 0; i < watch_end; ++i) {
+        const Watch& watch = watches[i];
+        if (watch.epoll_fd != epoll_fd || !watch.armed || open_file(watch.fd) == nullptr) continue;
+        constexpr std::uint32_t kKnown = POLLIN | POLLOUT | POLLPRI | POLLRDNORM | POLLWRNORM | POLLRDHUP;
+        entries.push_back({watch.fd, static_cast<short>(watch.event.events & kKnown), 0, watch.seen});
+    }
+    static_cast<void>(mask);  // as ppoll() has it here, and its nanoseconds
+    if (deadline != kNever)
+        deadline = time_after(from_timespec(to_timespec(board_time(std::max<Time>(deadline - now(), 0)))));
+    const int ready = poll_items(entries.data(), entries.size(), deadline);
+    if (ready <= 0) return ready;
+    std::vector<epoll_event> ready_devices(std::min<std::size_t>(entries.size(), most));
+    const int devices = gather(epoll_fd, entries.data(), entries.size(), ready_devices.data(),
+                               static_cast<int>(ready_devices.size()));
+    if (!copy_to_program(events, ready_devices.data(),
+                         static_cast<std::size_t>(devices) * sizeof(epoll_event)))
+        return -1;
+    if (entries[0].revents == 0 || devices == most) return devices;
+    const int others = REAL(epoll_wait)(epoll_fd, events + devices, most - devices, 0);
+    return others < 0 && devices == 0 ? others : devices + std::max(others, 0);
+}
+
+SHIM_EXPORT int epoll_pwait(int epoll_fd, epoll_event* events, int most, int timeout, const sigset_t* mask) {
+    if (!active()) return REAL(epoll_pwait)(epoll_fd, events, most, timeout, mask);
+    return wait_until(epoll_fd, events, most, timeout < 0 ? kNever : time_after(timeout * kMillisecond),
+                      mask);
+}
+
+SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int timeout) {
+    if (!active()) return REAL(epoll_wait)(epoll_fd, events, most, timeout);
+    return epoll_pwait(epoll_fd, events, most, timeout, nullptr);
+}
+
+SHIM_EXPORT int epoll_pwait2(int epoll_fd, epoll_event* events, int most, const timespec* timeout,
+                             const sigset_t* mask) {
+    if (!active()) return REAL(epoll_pwait2)(epoll_fd, events, most, timeout, mask);
+    timespec time{};
+    if (timeout != nullptr && !get_from_program(time, timeout)) return -1;
+    if (!is_valid(time)) {
+        errno = EINVAL;
+        return -1;
+    }
+    return wait_until(epoll_fd, events, most, timeout == nullptr ? kNever : time_after(from_timespec(time)),
+                      mask);
+}

@@ -1,0 +1,25 @@
+#pragma once
+// Waiting for several descriptors.
+
+#include "linuxboard/shim/preload/scheduler/scheduler.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace puckloop::shim {
+
+// poll_calls.cpp
+/// An entry of poll(). `seen` is of an edge-triggered socket, as in wire::PollEntry.
+struct PollItem {
+    int fd = -1;
+    short events = 0;
+    short revents = 0;
+    std::uint32_t seen = 0;
+};
+int poll_items(PollItem* items, std::size_t count, Time deadline);
+
+// epoll_calls.cpp
+/// A host's epoll watches something that neither this program nor time moves.
+bool epoll_watches_outside();
+
+}  // namespace puckloop::shim
