@@ -198,7 +198,7 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
 
     std::error_code ignored;
     if (!planned.scenario.events.any()) std::filesystem::remove(planned.out / "events.toml", ignored);
-    const ControlPlace control(planned.control, planned.out, driven_by_client);
+    ControlPlace control(planned.control, planned.out);
     raise_descriptor_limit();
     cosim::RunOptions options;
     if (planned.scenario.duration) options.duration = cosim::from_seconds(*planned.scenario.duration);
@@ -237,6 +237,7 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
     std::optional<DrivenRun> driven;
     if (driven_by_client) {
         driven.emplace(planned, request, set_up, options.interrupted);
+        control.name_client_socket();
         driven->drive(options, {trace, record, lines});
         factory = [&](const std::string& node) { return driven->make_node(node); };
     }

@@ -115,7 +115,7 @@ std::string client_socket_beside(const std::string& socket) {
     return (fs::path(socket).parent_path() / kClientSocket).string();
 }
 
-ControlPlace::ControlPlace(std::string socket, const fs::path& results, bool driven)
+ControlPlace::ControlPlace(std::string socket, const fs::path& results)
     : socket_(std::move(socket)), note_(results / kNote) {
     std::error_code ignored;
     remove_left_over(note_);
@@ -126,9 +126,11 @@ ControlPlace::ControlPlace(std::string socket, const fs::path& results, bool dri
     const std::string folder = fs::path(socket_).parent_path().string();
     if (::mkdir(folder.c_str(), S_IRWXU) != 0)
         throw RunError(fmt::format("cannot make {}: {}", folder, std::strerror(errno)));
-    nlohmann::json note{{"socket", socket_}};
-    if (driven) note["control"] = client_socket_beside(socket_);
-    write_note(note_, note);
+    write_note(note_, nlohmann::json::object({{"socket", socket_}}));
+}
+
+void ControlPlace::name_client_socket() {
+    write_note(note_, {{"socket", socket_}, {"control", client_socket_beside(socket_)}});
 }
 
 ControlPlace::~ControlPlace() {

@@ -22,11 +22,13 @@ class ControlPlace {
     /// `socket` empty: the run takes no commands. control.json of an earlier run is removed, and if that run
     /// was killed, its socket as well; so are private folders that killed runs of this user left elsewhere.
     /// Throws RunError.
-    /// `driven`: control.json names the client's socket too.
-    ControlPlace(std::string socket, const std::filesystem::path& results, bool driven = false);
+    ControlPlace(std::string socket, const std::filesystem::path& results);
     ~ControlPlace();
     ControlPlace(const ControlPlace&) = delete;
     ControlPlace& operator=(const ControlPlace&) = delete;
+
+    /// control.json names the client's socket too: whoever reads it there is let in. Throws RunError.
+    void name_client_socket();
 
   private:
     std::string socket_;
