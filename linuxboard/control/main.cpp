@@ -5,6 +5,7 @@
 // line failed; 2 wrong use, or a device that cannot be opened.
 
 #include "linuxboard/control/behaviours/coloured_spots.h"
+#include "linuxboard/control/behaviours/machine.h"
 #include "linuxboard/control/devices/ground_sensor.h"
 #include "linuxboard/control/devices/posix_serial.h"
 #include "linuxboard/control/rab_session.h"
@@ -114,7 +115,10 @@ int drive(const Options& options) {
     const std::unique_ptr<GroundSensor> ground = open_ground(options);
     const std::unique_ptr<RabSession> rab = open_rab(options, serial, log);
     const auto spots = options.camera.empty() ? nullptr : std::make_unique<ColouredSpots>(options.camera);
-    const std::unique_ptr<Behaviour> behaviour = make_behaviour(options.behaviour, options.rab_id);
+    const std::unique_ptr<Behaviour> behaviour =
+        options.behaviour == "machine"
+            ? std::make_unique<StateMachine>(options.machine, static_cast<std::uint32_t>(options.rab_id))
+            : make_behaviour(options.behaviour, options.rab_id);
     Session session(serial, log, interrupted);
     bool reached = false;
     std::string problem = "the PIC does not answer";

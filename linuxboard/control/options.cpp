@@ -1,8 +1,11 @@
 #include "linuxboard/control/options.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <getopt.h>
+#include <stdexcept>
+#include <unistd.h>
 
 namespace puckloop::control {
 
@@ -20,8 +23,12 @@ const char kUsage[] =
     "      seek           looks for a booth that shines green or blue, and serves there; uses /dev/video1\n"
     "                     unless --camera names another\n"
     "      serve          into the booth (TAM) ahead, 8 s inside, out, and again\n"
+    "      machine        the finite-state machine of --machine\n"
     "      still          nothing; with --rab somebody to be heard\n"
     "      spin           on the spot, with a short stop every 10.3 s: to measure sensors\n"
+    "  --machine TEXT     six behaviours and six conditions as automatic design writes them:\n"
+    "                     \"--nstates 2 --s0 0 --rwm0 5 --n0 1 --n0x0 0 --c0x0 0 --p0x0 1 --s1 1 ...\"\n"
+    "  -c FILE, -i NAME   taken and not read: programs of ARGoS' real robots are started with them\n"
     "  --duration S       seconds, a step each 0.1 s; 0: until Ctrl-C (0)\n"
     "  --tty DEVICE       serial line to the PIC, 115200 8N1 (/dev/ttyS0)\n"
     "  --i2c DEVICE       bus of the sensor boards; without the option /dev/i2c-3 is used if it is there\n"
@@ -38,7 +45,8 @@ const char kUsage[] =
     "range-and-bearing board:\n"
     "  --rab              use it if it is there (aggregate and follow do so anyway)\n"
     "  --rab-required     use it; end with status 2 when it does not answer\n"
-    "  --rab-id N         1..255, the robot's own; it is the lowest byte of what it sends\n"
+    "  --rab-id N         1..255, the robot's own (the number that its host name ends with); it is the\n"
+    "                     lowest byte of what it sends\n"
     "  --rab-bytes N      payload, 1..4 bytes, the same on all robots (2)\n"
     "  --rab-range N      0 farthest, about 1 m, to 255 shortest (115)\n"
     "  --rab-poll-ms N    between two looks for messages (20)\n"
@@ -49,6 +57,39 @@ const char kUsage[] =
 
 double milliseconds(const char* option, const char* text) {
     return number(option, text, "milliseconds, 1 to 10000", 1, 10000) / 1e3;
+}
+
+std::vector<MachineState> machine(const char* text) {
+    try {
+        return parse_machine(text);
+    } catch (const std::runtime_error& error) {
+        std::fprintf(stderr, "puckloop-control: --machine: %s\n", error.what());
+        std::exit(kWrongUse);
+    }
+}
+
+/// It listens to neighbours.
+bool machine_needs_neighbours(const std::vector<MachineState>& states) {
+    return std::any_of(states.begin(), states.end(), [](const MachineState& state) {
+        using Kind = MachineState::Kind;
+        const auto counts = [](const MachineCondition& one) {
+            return one.kind == MachineCondition::Kind::Neighbours ||
+                   one.kind == MachineCondition::Kind::FewNeighbours;
+        };
+        return state.kind == Kind::Attraction || state.kind == Kind::Repulsion ||
+               std::any_of(state.conditions.begin(), state.conditions.end(), counts);
+    });
+}
+
+/// The number at the end of the board's host name, as fleets of robots are named; 0: none from 1 to 255.
+int number_of_host() {
+    char name[256] = "";
+    if (::gethostname(name, sizeof name - 1) != 0) return 0;
+    const std::string text(name);
+    const std::size_t begin = text.find_last_not_of("0123456789") + 1;  // 0 where there are digits alone
+    if (begin == text.size() || text.size() - begin > 3) return 0;
+    const int number = std::atoi(text.c_str() + begin);
+    return number <= 255 ? number : 0;
 }
 
 enum {
@@ -73,6 +114,7 @@ enum {
     kRabGain,
     kRabCalibrate,
     kCamera,
+    kMachine,
 };
 
 const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
@@ -96,6 +138,7 @@ const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
                          {"rab-gain", required_argument, nullptr, kRabGain},
                          {"rab-calibrate", required_argument, nullptr, kRabCalibrate},
                          {"camera", required_argument, nullptr, kCamera},
+                         {"machine", required_argument, nullptr, kMachine},
                          {"help", no_argument, nullptr, 'h'},
                          {nullptr, 0, nullptr, 0}};
 
@@ -164,6 +207,13 @@ void take(Options& options, int choice, const char* name) {
     case kCamera:
         options.camera = optarg;
         break;
+    case kMachine:
+        options.machine = machine(optarg);
+        options.behaviour = "machine";
+        break;
+    case 'c':
+    case 'i':
+        break;
     case 'h':
         std::fputs(kUsage, stdout);
         std::exit(0);
@@ -175,14 +225,19 @@ void take(Options& options, int choice, const char* name) {
 
 /// What only shows when all options are known.
 void check(Options& options) {
-    if (make_behaviour(options.behaviour) == nullptr)
+    if (options.behaviour == "machine" && options.machine.empty())
+        wrong_value("behaviour", "machine", "--machine TEXT with it");
+    if (options.behaviour != "machine" && make_behaviour(options.behaviour) == nullptr)
         wrong_value("behaviour", options.behaviour.c_str(),
-                    "wander, light, aggregate, follow, seek, serve, still or spin");
-    if (needs_neighbours(options.behaviour)) options.rab = true;
+                    "wander, light, aggregate, follow, seek, serve, machine, still or spin");
+    if (needs_neighbours(options.behaviour) || machine_needs_neighbours(options.machine)) options.rab = true;
     if (needs_camera(options.behaviour) && options.camera.empty()) options.camera = kDefaultCamera;
+    if (options.rab && options.rab_id == 0) options.rab_id = number_of_host();
     if (options.rab && options.rab_id == 0 && options.calibrate == 0) {
         std::fprintf(stderr, "puckloop-control: %s needs --rab-id N, 1 to 255, another on each robot\n",
-                     needs_neighbours(options.behaviour) ? options.behaviour.c_str() : "--rab");
+                     needs_neighbours(options.behaviour) || machine_needs_neighbours(options.machine)
+                         ? options.behaviour.c_str()
+                         : "--rab");
         std::exit(kWrongUse);
     }
     options.link.seed = static_cast<std::uint32_t>(options.rab_id);
@@ -193,7 +248,7 @@ void check(Options& options) {
 Options parse_options(int argc, char** argv) {
     Options options;
     int index = 0;
-    for (int choice = 0; (choice = ::getopt_long(argc, argv, "h", kTable, &index)) != -1;)
+    for (int choice = 0; (choice = ::getopt_long(argc, argv, "hc:i:", kTable, &index)) != -1;)
         take(options, choice, kTable[index].name);
     if (optind < argc) {
         std::fprintf(stderr, "puckloop-control: unexpected argument %s\n%s", argv[optind], kUsage);

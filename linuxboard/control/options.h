@@ -1,11 +1,13 @@
 #pragma once
 // The command line of puckloop-control.
 
+#include "linuxboard/control/behaviours/machine_text.h"
 #include "linuxboard/control/control_loop.h"
 #include "linuxboard/control/option_values.h"
 #include "linuxboard/control/rab/rab_link.h"
 
 #include <string>
+#include <vector>
 
 namespace puckloop::control {
 
@@ -14,6 +16,7 @@ inline constexpr char kDefaultCamera[] = "/dev/video1";
 
 struct Options {
     std::string behaviour = "wander";
+    std::vector<MachineState> machine{};  ///< of the behaviour "machine"
     std::string tty = "/dev/ttyS0";
     std::string i2c;  ///< empty: kDefaultBus if it is there
     bool ground = true;

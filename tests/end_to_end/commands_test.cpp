@@ -27,6 +27,17 @@ TEST_CASE("every command has a help of its own") {
     CHECK_THAT(bench.puckloop({"--help"}).out, Contains("run"));
 }
 
+TEST_CASE("check takes the shipped experiment files of ARGoS") {
+    const Workbench bench;
+    for (const char* name : {"aggregation", "foraging", "grid_exploration"}) {
+        const Ended ended =
+            bench.puckloop({"check", PUCKLOOP_SOURCE "/scenarios/" + std::string(name) + ".argos"});
+        INFO(name << ": " << ended.err);
+        CHECK(ended.status == 0);
+        CHECK_THAT(ended.out, Contains("20 robots"));
+    }
+}
+
 TEST_CASE("standard output that takes nothing is one line and a status") {
     const Workbench bench;
     for (const Words& words : {Words{"--help"},

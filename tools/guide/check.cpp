@@ -5,6 +5,7 @@
 #include "campaigns/engine/campaign_file.h"
 #include "run/factory/preflight.h"
 #include "run/setup.h"
+#include "scenarios/argos/import.h"
 #include "tools/cli/command.h"
 #include "tools/guide/cost_estimate.h"
 #include "tools/guide/guide.h"
@@ -110,8 +111,8 @@ int check(const CheckOptions& options) {
     const fs::path file = scenario_named(options.file);
     RunRequest request;
     request.scenario = file;
-    const ordered_json result =
-        has_table(read_toml(file), "campaign") ? check_campaign(file) : check_scenario(request);
+    const bool campaign = !argos::is_experiment(file) && has_table(read_toml(file), "campaign");
+    const ordered_json result = campaign ? check_campaign(file) : check_scenario(request);
     if (options.json)
         fmt::print("{}\n", result.dump(2));
     else
