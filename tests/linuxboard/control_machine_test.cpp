@@ -109,7 +109,7 @@ TEST_CASE("any words are a machine or are refused") {
 TEST_CASE("modules of a machine drive where they say") {
     Sensors open;
     Sensors lamp = open;
-    lamp.light[5] = 2000;  // to the left
+    lamp.light[5] = 60;  // to the left
     Sensors wall = open;
     SECTION("to the light, and away from it") {
         const Actuators to = only("--s0 2").step(lamp, 0);
@@ -165,11 +165,11 @@ TEST_CASE("modules of a machine drive where they say") {
 
 TEST_CASE("conditions of a machine hold as often as they should") {
     Sensors grey;
-    grey.ground = {500, 500, 500};
+    grey.ground = {640, 644, 638};
     Sensors black = grey, white = grey, edge = grey;
-    black.ground = {50, 60, 40};
-    white.ground = {900, 950, 930};
-    edge.ground = {50, 500, 520};
+    black.ground = {327, 330, 325};
+    white.ground = {953, 950, 930};
+    edge.ground = {327, 640, 642};
     CHECK(share_left("--c0x0 0 --p0x0 1", black) == 1);
     CHECK(share_left("--c0x0 0 --p0x0 1", edge) == 0);
     CHECK(share_left("--c0x0 0 --p0x0 0.25", black) == Approx(0.25).margin(0.03));

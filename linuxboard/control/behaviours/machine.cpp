@@ -9,14 +9,15 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kFullSpeed = 120;            // mm/s
-constexpr double kContact = 4095;             // counts of proximity that are 1
-constexpr double kObstacle = 0.1;             // length of the proximity vector from which a walk turns
-constexpr double kPush = 5;                   // weight of obstacles
-constexpr double kNoDirection = 0.1;          // a shorter vector is none: straight on
-constexpr double kLightContrast = 40;         // counts between brightest and darkest: less is no direction
-constexpr double kBlack = 300, kWhite = 700;  // of the ground sensors' 0 to 1000
-constexpr double kCentimetres = 100;          // in a metre
+constexpr double kFullSpeed = 120;     // mm/s
+constexpr double kContact = 4095;      // counts of proximity that are 1
+constexpr double kObstacle = 0.1;      // length of the proximity vector from which a walk turns
+constexpr double kPush = 5;            // weight of obstacles
+constexpr double kNoDirection = 0.1;   // a shorter vector is none: straight on
+constexpr double kLightContrast = 20;  // counts between brightest and darkest: less is no direction
+// Half way between what the ground sensors give over paper of 0, 50 and 100 %: some 327, 640 and 953.
+constexpr double kBlack = 480, kWhite = 800;
+constexpr double kCentimetres = 100;  // in a metre
 
 /// Straight towards a direction: the wheel on its side turns slower, backwards if it lies behind.
 Actuators towards(double x, double y) {
