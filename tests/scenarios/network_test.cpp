@@ -88,7 +88,7 @@ TEST_CASE("what the radio's table sets, and who has one", "[network]") {
         CHECK_THROWS_WITH(read_scenario(bad.path()), Catch::Contains(what));
     };
     const std::string wifi = "[network]\nmode = \"wifi\"\n", table = wifi + "[network.wifi]\n";
-    refused(table + "standard = \"n\"\n", "line 8: there is no standard 'n'");
+    refused(table + "standard = \"n\"\n", "line 8: network.wifi: there is no standard 'n'");
     refused(table + "rate = \"11 Mbit/s\"\n", "802.11g has no rate of 11 Mbit/s");
     refused(table + "rate = \"11 MB\"\n", "unknown unit 'MB'");
     refused(table + "power = \"40 dBm\"\n", "power is out of range");
