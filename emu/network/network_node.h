@@ -3,36 +3,22 @@
 // (linuxboard/shim/network is what makes and takes them). One channel that all share carries one packet at a
 // time, in the order in which they were handed over; each arrives a fixed time after its last octet was sent.
 //
-// Deviations: 1. No frames, contention or range of a radio: `mode` perfect or fixed. 2. A broadcast takes the
-// channel once and reaches everybody; so does a multicast, and the computers' kernels choose.
+// Deviations: 1. No frames, contention or range of a radio (those: emu/wifi): `mode` perfect or fixed. 2. A
+// broadcast takes the channel once and reaches everybody; so does a multicast, and the computers' kernels
+// choose.
 
 #include "base/fields/field.h"
 #include "cosim/core/node.h"
 #include "cosim/core/seconds_form.h"
-#include "emu/network/network_faults.h"
-#include "protocols/ip_packet.h"
+#include "emu/network/computers.h"
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace puckloop::network {
-
-struct Station {
-    std::string name;
-    std::string address;
-
-    template <class Visitor>
-    static constexpr auto fields(Visitor&& visit) {
-        return visit(field("name", &Station::name, "of the port").required(),
-                     field("address", &Station::address, "IPv4").required());
-    }
-};
-static_assert(lists_all_fields<Station>);
 
 struct NetworkSpec {
     static constexpr std::string_view kKind = "network";
@@ -76,29 +62,13 @@ class NetworkNode : public cosim::Node {
     std::string finish() override;
 
   private:
-    struct Counts {
-        std::uint64_t sent = 0, octets_sent = 0;  ///< handed over
-        std::uint64_t received = 0, octets_received = 0;
-        std::uint64_t queue_full = 0;  ///< dropped
-        std::uint64_t nobody = 0;      ///< for an address that nobody has
-    };
-    struct Place {
-        protocols::IpAddress address = 0;
-        std::deque<cosim::Time> waiting;  ///< when its packets' transmissions begin
-        std::map<std::pair<cosim::Time, std::uint64_t>, Passage> coming;
-        Counts counts;
-    };
-
     void take(std::size_t from, const cosim::Packet& packet, cosim::Time now);
-    bool is_for(std::size_t place, protocols::IpAddress to) const;
-    bool is_for_many(protocols::IpAddress to) const;
-    void arrange(const Passage& passage);
 
     NetworkSpec spec_;
+    Computers computers_;
     std::vector<cosim::Port> ports_;
-    std::vector<Place> places_;
-    NetworkFaults faults_;
-    std::uint64_t packets_ = 0, arrangements_ = 0;
+    std::vector<std::deque<cosim::Time>> waiting_;  ///< of each: when its packets' transmissions begin
+    std::uint64_t packets_ = 0;
     cosim::Time free_ = 0;  ///< the channel is, from then on
     cosim::Time busy_ = 0;
     cosim::Time granted_ = 0;

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace puckloop::physics {
 
@@ -51,7 +52,7 @@ Overhead* watch(std::unique_ptr<CommandSource>& commands, std::optional<TrackerP
 }  // namespace
 
 struct WorldNode::Impl {
-    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands, bool bluetooth,
+    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands, PosePorts media,
          std::optional<TrackerPlan> tracker);
     void add_cameras();
     void take(const cosim::Message& message);
@@ -68,7 +69,7 @@ struct WorldNode::Impl {
     std::vector<BoothLink> booths;
     SoundLink sound;
     cosim::PortIndex first_booth = 0xFFFF;
-    std::vector<cosim::PortIndex> pose_ports;  // "ir", "ircom", "bluetooth": they hear where everything is
+    std::vector<cosim::PortIndex> pose_ports;  // media: they hear where everything is
     std::vector<double> poses;                 // as last published; empty without those
     std::map<std::size_t, double> scene;       // likewise, by id: what events change
     std::vector<cosim::Message> waiting;       // stamped at or after the next step
@@ -86,7 +87,7 @@ struct WorldNode::Impl {
 };
 
 WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> source,
-                      bool bluetooth, std::optional<TrackerPlan> tracker)
+                      PosePorts media, std::optional<TrackerPlan> tracker)
     : model(std::move(description)),
       sound(model.description(), kPortsOfRobot),
       log(model),
@@ -107,9 +108,11 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
         pose_ports.push_back(static_cast<cosim::PortIndex>(ports.size()));
         ports.push_back({"ircom", cosim::PortKind::Signals});
     }
-    if (bluetooth) {
+    for (const auto& [there, name] :
+         {std::pair(media.bluetooth, "bluetooth"), std::pair(media.network, "network")}) {
+        if (!there) continue;
         pose_ports.push_back(static_cast<cosim::PortIndex>(ports.size()));
-        ports.push_back({"bluetooth", cosim::PortKind::Signals});
+        ports.push_back({name, cosim::PortKind::Signals});
     }
     if (!pose_ports.empty()) {
         poses.assign(pose_signal_names(model.description()).size(), std::nan(""));
@@ -257,8 +260,8 @@ void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
 }
 
 WorldNode::WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands,
-                     bool bluetooth, std::optional<TrackerPlan> tracker)
-    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands), bluetooth,
+                     PosePorts media, std::optional<TrackerPlan> tracker)
+    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands), media,
                                    std::move(tracker))) {}
 
 WorldNode::~WorldNode() = default;

@@ -21,16 +21,22 @@
 
 namespace puckloop::physics {
 
+/// Media beside those of the description that hear where everything is, each at a port with the same poses as
+/// "ir".
+struct PosePorts {
+    bool bluetooth = false;  ///< "bluetooth"
+    bool network = false;    ///< "network"
+};
+
 class WorldNode final : public cosim::Node {
   public:
     /// Throws InputError on an impossible world, RunError when recordings cannot be written.
     explicit WorldNode(World description) : WorldNode(std::move(description), {}, nullptr) {}
     /// With what happens to it, and where commands come from if the plan has any. Throws as check_events()
     /// too.
-    /// `bluetooth`: it has the port "bluetooth", with the same poses as "ir". With a mission program the plan
-    /// states so (EventPlan::mission).
+    /// With a mission program the plan states so (EventPlan::mission).
     WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands,
-              bool bluetooth = false, std::optional<TrackerPlan> tracker = {});
+              PosePorts media = {}, std::optional<TrackerPlan> tracker = {});
     ~WorldNode() override;
 
     std::string_view name() const override;

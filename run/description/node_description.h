@@ -10,6 +10,7 @@
 #include "emu/rab_board/rab_spec.h"
 #include "emu/radio/ether_node.h"
 #include "emu/tam_avr/tam_spec.h"
+#include "emu/wifi/wifi_node.h"
 #include "emu/xbee/module_node.h"
 #include "physics/ir/ir_node.h"
 #include "physics/ircom/ircom_node.h"
@@ -28,7 +29,8 @@ namespace puckloop::tools {
 
 using NodeKind = std::variant<MainBoard, rab::RabSpec, tam::TamSpec, LinuxProgram, WorldSpec, physics::IrSpec,
                               physics::IrcomSpec, i2c_devices::BusSpec, cosim::CanBusOptions, OutsideSpec,
-                              xbee::ModuleSpec, bluetooth::AirSpec, radio::EtherSpec, network::NetworkSpec>;
+                              xbee::ModuleSpec, bluetooth::AirSpec, radio::EtherSpec, network::NetworkSpec,
+                              wifi::WifiSpec>;
 
 struct NodeDescription {
     NodeKind kind;

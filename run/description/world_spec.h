@@ -25,6 +25,7 @@ struct WorldSpec {
     physics::EventPlan events{};
     std::string control{};
     bool bluetooth = false;
+    bool wifi = false;
     std::optional<physics::TrackerSpec> tracker{};
     std::optional<MissionProgramSpec> mission{};
 
@@ -36,6 +37,7 @@ struct WorldSpec {
             field("control", &WorldSpec::control, "socket at which commands come; empty: none")
                 .not_in(Comparison::Run),
             field("bluetooth", &WorldSpec::bluetooth, "there is a port for Bluetooth's medium"),
+            field("wifi", &WorldSpec::wifi, "there is a port for a wireless network"),
             field("tracker", &WorldSpec::tracker, "above the arena; a mission program needs one"),
             field("mission", &WorldSpec::mission, "program that judges the run"));
     }

@@ -13,6 +13,7 @@
 #include "emu/rab_board/rab_node.h"
 #include "emu/radio/ether_node.h"
 #include "emu/tam_avr/tam_node.h"
+#include "emu/wifi/wifi_node.h"
 #include "emu/xbee/module_node.h"
 #include "linuxboard/shim/node/linux_node.h"
 #include "physics/ir/ir_node.h"
@@ -140,7 +141,7 @@ std::unique_ptr<cosim::Node> make(const WorldSpec& spec, Faults /*none*/) {
     if (spec.tracker) tracker = {*spec.tracker, spec.mission ? make_mission_program(*spec.mission) : nullptr};
     return std::make_unique<physics::WorldNode>(
         spec.world, spec.events, spec.control.empty() ? nullptr : make_control_socket(spec.control),
-        spec.bluetooth, std::move(tracker));
+        physics::PosePorts{spec.bluetooth, spec.wifi}, std::move(tracker));
 }
 
 std::unique_ptr<cosim::Node> make(const physics::IrSpec& spec, Faults faults) {
@@ -181,6 +182,11 @@ std::unique_ptr<cosim::Node> make(radio::EtherSpec spec, Faults faults) {
 std::unique_ptr<cosim::Node> make(network::NetworkSpec spec, Faults faults) {
     spec.faults = std::move(faults);
     return std::make_unique<network::NetworkNode>(spec);
+}
+
+std::unique_ptr<cosim::Node> make(wifi::WifiSpec spec, Faults faults) {
+    spec.faults = std::move(faults);
+    return std::make_unique<wifi::WifiNode>(spec);
 }
 
 }  // namespace

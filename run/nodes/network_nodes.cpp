@@ -1,8 +1,11 @@
 #include "run/nodes/network_nodes.h"
 
+#include "physics/world/pose_signals.h"
 #include "run/nodes/linux_nodes.h"
 #include "run/nodes/plan_kit.h"
 #include "scenarios/tables/network_tables.h"
+
+#include <algorithm>
 
 namespace puckloop::tools {
 
@@ -26,6 +29,48 @@ void add_host(RunSetup& setup, const scenarios::ComputerHost& host, const RunReq
     setup.nodes.push_back({node, {std::move(spec)}});
 }
 
+network::NetworkSpec network_spec(const scenarios::NetworkMedium& medium,
+                                  const std::vector<scenarios::NetworkComputer>& computers) {
+    network::NetworkSpec spec;
+    spec.name = kNetwork;
+    spec.prefix = medium.prefix;
+    spec.latency = cosim::from_seconds(medium.latency) - 2 * kTransfer;
+    spec.rate = medium.rate;
+    spec.queue = medium.queue;
+    for (const scenarios::NetworkComputer& one : computers)
+        spec.stations.push_back({one.name, one.address});
+    return spec;
+}
+
+wifi::WifiSpec wifi_spec(const RunSetup& setup, const std::vector<scenarios::NetworkComputer>& computers) {
+    const scenarios::Scenario& scenario = setup.scenario;
+    const scenarios::NetworkMedium& medium = *scenario.network;
+    wifi::WifiSpec spec;
+    spec.name = kNetwork;
+    spec.seed = scenario.seed;
+    spec.prefix = medium.prefix;
+    spec.latency = cosim::from_seconds(medium.latency) - 2 * kTransfer;
+    spec.queue = medium.queue;
+    spec.settings = *medium.wifi;
+    spec.access_point = medium.access_point;
+    spec.csv = (setup.out / "wifi.csv").string();
+    for (const scenarios::NetworkComputer& one : computers) {
+        wifi::WifiStation station{.computer = {one.name, one.address}};
+        if (one.is_host) {
+            const auto& position = scenario.hosts[one.index].position;
+            station.wired = !position;
+            if (position) station.at = *position;
+        } else {
+            const physics::Robot& body = scenario.world.robots[one.index];
+            station.at = {body.x, body.y};
+            // The world's signals begin with the robots' places.
+            station.pose = static_cast<int>(one.index * physics::kPoseSignals);
+        }
+        spec.stations.push_back(std::move(station));
+    }
+    return spec;
+}
+
 }  // namespace
 
 void join_network(const RunSetup& setup, const std::string& computer, LinuxProgram& program) {
@@ -44,24 +89,32 @@ void join_network(const RunSetup& setup, const std::string& computer, LinuxProgr
                 spec.names.push_back({robot.linux_board->hostname, one.address});
 }
 
+bool has_moving_radios(const scenarios::Scenario& scenario) {
+    if (!scenario.network || !scenario.network->wifi) return false;
+    const auto computers = scenarios::computers_of(scenario);
+    return std::any_of(computers.begin(), computers.end(), [](const auto& one) { return !one.is_host; });
+}
+
 void add_network(RunSetup& setup, const RunRequest& request) {
     const scenarios::Scenario& scenario = setup.scenario;
     if (!scenario.network) return;
     for (const scenarios::ComputerHost& host : scenario.hosts)
         add_host(setup, host, request);
-    network::NetworkSpec spec;
-    spec.name = kNetwork;
-    spec.prefix = scenario.network->prefix;
-    spec.latency = cosim::from_seconds(scenario.network->latency) - 2 * kTransfer;
-    spec.rate = scenario.network->rate;
-    spec.queue = scenario.network->queue;
-    for (const scenarios::NetworkComputer& one : scenarios::computers_of(scenario)) {
-        spec.stations.push_back({one.name, one.address});
+    const std::vector<scenarios::NetworkComputer> computers = scenarios::computers_of(scenario);
+    for (const scenarios::NetworkComputer& one : computers) {
         cosim::LinkSpec link{one.name + ".network", {one.name + ".linux", kNetwork}, {kNetwork, one.name}};
         link.latency = kTransfer;
         setup.links.push_back(link);
     }
-    if (!spec.stations.empty()) add_free(setup, kNetwork, std::move(spec));
+    if (computers.empty()) return;
+    if (scenario.network->wifi)
+        add_free(setup, kNetwork, wifi_spec(setup, computers));
+    else
+        add_free(setup, kNetwork, network_spec(*scenario.network, computers));
+    if (!has_moving_radios(scenario)) return;
+    cosim::LinkSpec places{"network.world", {kNetwork, "world"}, {"world", kNetwork}};
+    places.record_from_b = false;
+    setup.links.push_back(places);
 }
 
 }  // namespace puckloop::tools

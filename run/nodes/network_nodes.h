@@ -11,6 +11,9 @@ namespace puckloop::tools {
 /// Puts the program of `computer`, a robot or a host, on the scenario's network, if there is one.
 void join_network(const RunSetup& setup, const std::string& computer, LinuxProgram& program);
 
+/// Robots on it have radios, so that the world states where they are.
+bool has_moving_radios(const scenarios::Scenario& scenario);
+
 /// Network, hosts and links. After the robots. Throws InputError.
 void add_network(RunSetup& setup, const RunRequest& request);
 

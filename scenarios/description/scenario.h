@@ -6,11 +6,13 @@
 #include "emu/pic/pic_spec.h"
 #include "emu/rab_board/rab_spec.h"
 #include "emu/tam_avr/tam_spec.h"
+#include "emu/wifi/wifi_settings.h"
 #include "missions/mission.h"
 #include "physics/events/event.h"
 #include "physics/tracker/tracker_spec.h"
 #include "scenarios/description/expectation.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -166,17 +168,20 @@ struct TamBoard {
 
 /// The network between Linux boards and hosts.
 struct NetworkMedium {
-    std::string address = "10.0.0.0";  ///< of the network
-    int prefix = 24;                   ///< bits of it
-    double latency = 1e-4;             ///< s
-    double rate = 0.0;                 ///< bit/s; 0: packets take no time
-    std::int64_t queue = 1000;         ///< packets that a computer's interface keeps
+    std::string address = "10.0.0.0";                     ///< of the network
+    int prefix = 24;                                      ///< bits of it
+    double latency = 1e-4;                                ///< s
+    double rate = 0.0;                                    ///< bit/s; 0: packets take no time
+    std::int64_t queue = 1000;                            ///< packets that a computer's interface keeps
+    std::optional<wifi::WifiSettings> wifi{};             ///< there: by radio, with rates of its own
+    std::optional<std::array<double, 2>> access_point{};  ///< m; none: ad-hoc
 };
 
 /// A computer on the network that is on no robot.
 struct ComputerHost {
     std::string name;
     LinuxBoard board;
+    std::optional<std::array<double, 2>> position{};  ///< m, of its radio; none: it is wired
 };
 
 /// A CAN module of a board: "robot0.pic.can1".

@@ -1,8 +1,10 @@
 #include "scenarios/tables/network_tables.h"
 
 #include "base/error.h"
+#include "emu/wifi/phy.h"
 #include "protocols/ip_packet.h"
 #include "scenarios/tables/linux_keys.h"
+#include "scenarios/values/field_table.h"
 
 #include <fmt/format.h>
 
@@ -19,6 +21,7 @@ namespace {
 
 constexpr double kLongestLatency = 10.0, kShortestLatency = 1e-5;  // s
 constexpr double kSlowest = 1e3, kFastest = 1e11;                  // bit/s
+constexpr std::int64_t kLongestQueue = 1'000'000;                  // packets
 constexpr std::string_view kExample = "such as \"10.0.0.0/24\"";
 
 IpAddress mask_of(int prefix) {
@@ -55,10 +58,38 @@ double read_latency(Reader& reader, double fallback) {
     return latency;
 }
 
+std::array<double, 2> read_place(Reader& reader, std::string_view key) {
+    const std::vector<double> place = reader.quantities(key, Dimension::Length, 2);
+    return {place[0], place[1]};
+}
+
+/// mode = "wifi": its rates are those of [network.wifi].
+void read_wifi(Reader& reader, NetworkMedium& medium) {
+    wifi::WifiSettings& settings = medium.wifi.emplace();
+    if (const TomlValue* table = reader.table("wifi")) {
+        Reader keys(reader.file(), "network.wifi", *table);
+        read_fields(keys, settings);
+        if (const auto found = wifi::problem_of(settings))
+            keys.fail(found->key, found->problem, found->expected);
+    }
+    if (reader.has("rate")) reader.fail("rate", "a radio has rates of its own", "rate in [network.wifi]");
+    if (reader.has("access_point")) medium.access_point = read_place(reader, "access_point");
+    medium.latency = read_latency(reader, 5e-4);
+    medium.queue = reader.integer("queue", medium.queue, 1, kLongestQueue);
+}
+
 NetworkMedium read_medium(Reader& reader) {
     NetworkMedium medium;
-    const bool perfect = reader.choice("mode", "perfect", {"perfect", "fixed"}) == "perfect";
+    const std::string mode = reader.choice("mode", "perfect", {"perfect", "fixed", "wifi"});
+    const bool perfect = mode == "perfect";
     read_subnet(reader, medium);
+    if (mode == "wifi") {
+        read_wifi(reader, medium);
+        return medium;
+    }
+    for (const char* key : {"wifi", "access_point"})
+        if (reader.has(key))
+            reader.fail(key, fmt::format("a network that is not by radio has no {}", key), "mode = \"wifi\"");
     if (perfect) {
         for (const char* key : {"rate", "queue"})
             if (reader.has(key))
@@ -73,8 +104,7 @@ NetworkMedium read_medium(Reader& reader) {
     if (!(*rate >= kSlowest && *rate <= kFastest))
         reader.fail("rate", "rate is out of range", "1 kbit/s to 100 Gbit/s");
     medium.rate = *rate;
-    constexpr std::int64_t kMost = 1'000'000;
-    medium.queue = reader.integer("queue", medium.queue, 1, kMost);
+    medium.queue = reader.integer("queue", medium.queue, 1, kLongestQueue);
     return medium;
 }
 
@@ -112,6 +142,14 @@ void read_host(const std::string& file, const TomlValue& table, Scenario& scenar
     host.board.place_line = table.line;
     read_program(reader, host.board);
     host.board.address = read_network_address(reader);
+    if (reader.has("position")) {
+        if (!scenario.network->wifi)
+            reader.fail("position", "a host without a radio is at no place", "mode = \"wifi\" in [network]");
+        host.position = read_place(reader, "position");
+    } else if (scenario.network->wifi && !scenario.network->access_point) {
+        reader.fail("", fmt::format("{} has neither a radio nor a wire to an access point", host.name),
+                    "position = [\"1 m\", \"0 m\"], or access_point in [network]");
+    }
     if (host.board.command.empty())
         reader.fail("program", "'program' is missing", "program = [\"./server\"]");
     reader.finish();
@@ -224,7 +262,7 @@ std::vector<NetworkComputer> computers_of(const Scenario& scenario) {
     std::vector<NetworkComputer> computers;
     if (!scenario.network) return computers;
     for (const Addressed& one : addressed(scenario, false))
-        computers.push_back({one.name, address_for(scenario, one)});
+        computers.push_back({one.name, address_for(scenario, one), one.index, one.is_host});
     return computers;
 }
 

@@ -19,6 +19,8 @@ void read_network(Reader& top, Scenario& scenario);
 struct NetworkComputer {
     std::string name;
     std::string address;
+    std::size_t index = 0;  ///< among the scenario's robots, or its hosts
+    bool is_host = false;
 };
 /// Robots that have a Linux board, and hosts, in their order. Without [network] none.
 std::vector<NetworkComputer> computers_of(const Scenario& scenario);

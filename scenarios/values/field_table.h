@@ -7,17 +7,35 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
 namespace puckloop::scenarios {
 
-/// Every field is a number with its unit. Throws InputError, also at a key that is no field.
+/// Of one field.
+void read_number(Reader& reader, const auto& one, double& value) {
+    value = reader.quantity(one.key, dimension_of(one.unit), value);
+    if (!(value >= one.least && value <= one.most) || (one.open && value == one.least))
+        reader.fail(one.key, fmt::format("{} is out of range", one.key),
+                    fmt::format("{:g} to {:g} {}", one.least, one.most, one.unit == "1" ? "" : one.unit));
+}
+
+/// Every field is a number with its unit, a whole number or a text; what texts there may be is for the
+/// caller. Throws InputError, also at a key that is no field.
 template <Described T>
 void read_fields(Reader reader, T& result) {
     const auto read = [&](const auto& one) {
-        double& value = result.*one.member;
-        value = reader.quantity(one.key, dimension_of(one.unit), value);
-        if (!(value >= one.least && value <= one.most) || (one.open && value == one.least))
-            reader.fail(one.key, fmt::format("{} is out of range", one.key),
-                        fmt::format("{:g} to {:g} {}", one.least, one.most, one.unit == "1" ? "" : one.unit));
+        auto& value = result.*one.member;
+        using Value = std::remove_reference_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, std::string>) {
+            value = reader.text(one.key, value);
+        } else if constexpr (std::is_integral_v<Value>) {
+            value = reader.integer(one.key, value, static_cast<std::int64_t>(one.least),
+                                   static_cast<std::int64_t>(one.most));
+        } else {
+            read_number(reader, one, value);
+        }
     };
     for_each_entry<T>(read);
     reader.finish();

@@ -38,6 +38,12 @@ constexpr std::array kUnits{
     QuantityUnit{"N", Dimension::Force, 1.0},
     QuantityUnit{"Nm", Dimension::Torque, 1.0},
     QuantityUnit{"mNm", Dimension::Torque, 1e-3},
+    QuantityUnit{"dB", Dimension::Gain, 1.0},
+    QuantityUnit{"dBm", Dimension::Level, 1.0},
+    QuantityUnit{"bit/s", Dimension::DataRate, 1.0},
+    QuantityUnit{"kbit/s", Dimension::DataRate, 1e3},
+    QuantityUnit{"Mbit/s", Dimension::DataRate, 1e6},
+    QuantityUnit{"Gbit/s", Dimension::DataRate, 1e9},
     QuantityUnit{"%", Dimension::Ratio, 1e-2},
     QuantityUnit{"ppm", Dimension::Ratio, 1e-6},
 };
@@ -65,6 +71,12 @@ DimensionText text_of(Dimension dimension) {
         return {"a force", "a force such as \"1.5 N\""};
     case Dimension::Torque:
         return {"a torque", "a torque such as \"20 mNm\""};
+    case Dimension::Gain:
+        return {"a ratio of powers", "a ratio of powers such as \"3 dB\""};
+    case Dimension::Level:
+        return {"a power", "a power such as \"-82 dBm\""};
+    case Dimension::DataRate:
+        return {"a rate", "a rate such as \"11 Mbit/s\""};
     case Dimension::Ratio:
         return {"a ratio", "a ratio such as 0.5, \"50 %\" or \"20 ppm\""};
     case Dimension::Number:
@@ -124,6 +136,9 @@ Dimension dimension_of(std::string_view unit) {
     if (unit == "V") return Dimension::Voltage;
     if (unit == "N m") return Dimension::Torque;
     if (unit == "Hz") return Dimension::Frequency;
+    if (unit == "dB") return Dimension::Gain;
+    if (unit == "dBm") return Dimension::Level;
+    if (unit == "bit/s") return Dimension::DataRate;
     if (unit == "1") return Dimension::Ratio;
     return Dimension::Number;  // counts, steps and the like: bare numbers
 }

@@ -60,6 +60,7 @@ const std::vector<std::string> kFolders = {
     "emu/xbee",
     "emu/bluetooth",
     "emu/network",
+    "emu/wifi",
     "emu/camera",
     "emu/board",
     "emu/pic",

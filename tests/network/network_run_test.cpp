@@ -120,6 +120,37 @@ TEST_CASE("robots talk to each other and to a server by Python's sockets, the sa
     CHECK(network["robot0"]["packets_sent"] > 5);
 }
 
+TEST_CASE("by radio the same in every placement, and frames leave evidence", "[network]") {
+    const Workbench bench;
+    std::string text = hosts({{"server", python("swarm_server.py")}}, "1.6 s",
+                             "mode = \"wifi\"\naccess_point = [\"30 cm\", \"30 cm\"]");
+    for (int i = 0; i < 3; ++i)
+        text += fmt::format("[[robot]]\nposition = [\"{} cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n"
+                            "[robot.linux]\nprogram = {}\n",
+                            20 * i - 20, python("swarm_robot.py"));
+    check_everywhere(bench, bench.file("wifi.toml", text));
+    for (int i = 0; i < 3; ++i) {
+        const std::string log = log_of(bench, "o0", fmt::format("robot{}", i));
+        INFO(log);
+        CHECK(log.find("server answers 5\n") != std::string::npos);
+        CHECK(count(log, "heard ") >= 2 * 4);  // nobody acknowledges a broadcast: one may be lost
+    }
+    const auto network = bench.report("o0")["nodes"]["network"];
+    CHECK(network["access_point"]["frames"] > 30);
+    CHECK(network["stations"]["robot0"]["radio"]["acks"] > 5);
+    CHECK_FALSE(network["stations"]["server"].contains("radio"));
+    const std::string frames = text_of(bench.out("o0") / "wifi.csv");
+    CHECK(frames.starts_with("time_s,end_s,from,to,kind,octets,rate_mbit_s,attempt,dbm,fate\n"));
+    CHECK(count(frames, ",robot1,access_point,data,") > 5);
+    CHECK(count(frames, ",access_point,robot1,ack,14,24,") > 5);
+    // Faults of packets act here as well.
+    const Ended ended = bench.run("far", {bench.file("far.toml", text).string(), "--in-process", "--fault",
+                                          "partition node=network group=server begin=0s end=1s"});
+    INFO(ended.err);
+    CHECK(ended.status == 0);
+    CHECK(bench.report("far")["faults"][0]["fired"] > 3);
+}
+
 TEST_CASE("asyncio: many connections, datagrams, time-outs beside each other", "[network]") {
     const Workbench bench;
     check_everywhere(

@@ -62,6 +62,47 @@ TEST_CASE("what the network's tables set", "[network]") {
     CHECK(read_scenario(plain.path()).network->rate == 0.0);
 }
 
+TEST_CASE("what the radio's table sets, and who has one", "[network]") {
+    const TemporaryFile file(kBegin +
+                             "[network]\nmode = \"wifi\"\naccess_point = [\"1 m\", \"-50 cm\"]\n"
+                             "[network.wifi]\nstandard = \"b\"\nrate = \"5.5 Mbit/s\"\npower = \"8 dBm\"\n"
+                             "shadowing = \"0 dB\"\nexponent = 2.5\nattempts = 4\n"
+                             "[[host]]\nname = \"pc\"\n" +
+                             kProgram + "[[host]]\nname = \"laptop\"\nposition = [\"0 m\", \"2 m\"]\n" +
+                             kProgram);
+    const Scenario scenario = read_scenario(file.path());
+    REQUIRE(scenario.network);
+    REQUIRE(scenario.network->wifi);
+    const wifi::WifiSettings& radio = *scenario.network->wifi;
+    CHECK(radio.standard == "b");
+    CHECK(radio.rate == Approx(5.5e6));
+    CHECK(radio.power == Approx(8));
+    CHECK(radio.shadowing == 0);
+    CHECK(radio.exponent == Approx(2.5));
+    CHECK(radio.attempts == 4);
+    CHECK(radio.carrier_sense == wifi::WifiSettings{}.carrier_sense);
+    CHECK(scenario.network->latency == Approx(5e-4));
+    CHECK(scenario.network->access_point->at(1) == Approx(-0.5));
+    CHECK_FALSE(scenario.hosts[0].position);
+    CHECK(scenario.hosts[1].position->at(1) == Approx(2));
+    const auto refused = [](const std::string& text, const std::string& what) {
+        const TemporaryFile bad(kBegin + text);
+        CHECK_THROWS_WITH(read_scenario(bad.path()), Catch::Contains(what));
+    };
+    const std::string wifi = "[network]\nmode = \"wifi\"\n", table = wifi + "[network.wifi]\n";
+    refused(table + "standard = \"n\"\n", "line 8: network.wifi: there is no standard 'n'");
+    refused(table + "rate = \"11 Mbit/s\"\n", "802.11g has no rate of 11 Mbit/s");
+    refused(table + "rate = \"11 MB\"\n", "unknown unit 'MB'");
+    refused(table + "power = \"40 dBm\"\n", "power is out of range");
+    refused(table + "power = \"4 dB\"\n", "is a ratio of powers");
+    refused(table + "attempts = 0\n", "attempts");
+    refused(table + "powr = \"4 dBm\"\n", "powr");
+    refused(wifi + "rate = \"11 Mbit/s\"\n", "a radio has rates of its own");
+    refused(wifi + "[[host]]\n" + kProgram, "host0 has neither a radio nor a wire");
+    refused("[network]\naccess_point = [\"1 m\", \"1 m\"]\n", "has no access_point");
+    refused("[network]\n[[host]]\nposition = [\"1 m\", \"1 m\"]\n" + kProgram, "a host without a radio");
+}
+
 TEST_CASE("a rate is a number and its unit", "[network]") {
     CHECK(parse_rate("11 Mbit/s") == 11e6);
     CHECK(parse_rate("0.5kbit/s") == 500.0);

@@ -1,5 +1,6 @@
 #include "base/fields/field.h"
 #include "cosim/faults/kinds/kind_table.h"
+#include "emu/wifi/wifi_settings.h"
 #include "physics/tracker/tracker_spec.h"
 #include "scenarios/reader/events/action_forms.h"
 #include "tools/guide/schema/schema_kit.h"
@@ -110,10 +111,12 @@ constexpr SchemaKey kBluetooth[]{
     {"range", "length", ""}, {"discovery", "time", ""}, {"name_time", "times2", "mean, standard deviation"},
     {"link_time", "times2", ""}, {"release_time", "times2", ""}};
 constexpr SchemaKey kNetwork[]{
-    {"mode", "text", "perfect (default) or fixed"}, {"address", "text", "default 10.0.0.0/24"},
-    {"latency", "time", "default 0.1 ms, fixed 1 ms"}, {"rate", "text", "fixed: of the channel; default 11 Mbit/s"},
-    {"queue", "integer", "fixed: packets that an interface keeps; default 1000"}};
-constexpr SchemaKey kHost[]{{"name", "text", "default host0, host1, ..."}, {"address", "text", "on the network"}};
+    {"mode", "text", "perfect (default), fixed or wifi"}, {"address", "text", "default 10.0.0.0/24"},
+    {"latency", "time", "default 0.1 ms, fixed 1 ms, wifi 0.5 ms"}, {"rate", "text", "fixed: of the channel; default 11 Mbit/s"},
+    {"queue", "integer", "fixed, wifi: packets that an interface keeps; default 1000"},
+    {"access_point", "lengths2", "wifi: where it is; without one stations send to each other"}};
+constexpr SchemaKey kHost[]{{"name", "text", "default host0, host1, ..."}, {"address", "text", "on the network"},
+    {"position", "lengths2", "wifi: of its radio; without one it is wired to the access point"}};
 constexpr SchemaKey kGroup[]{
     {"of", "text", "robot (default), box, cylinder or lamp"}, {"count", "integer", "1 to 1000 units"},
     {"first", "integer", "number of the first one; default 0"},
@@ -289,16 +292,21 @@ ordered_json fault_schema() {
 
 namespace {
 
-/// Keys of a struct that lists its fields, all of them numbers with a unit.
+/// Keys of a struct that lists its fields: numbers with a unit, whole numbers and texts.
 template <Described T>
 ordered_json fields_schema(std::string_view about) {
     constexpr std::pair<std::string_view, std::string_view> kTypes[]{
-        {"s", "time"}, {"m", "length"}, {"rad", "angle"}, {"Hz", "frequency"}, {"1", "ratio"}};
+        {"s", "time"},    {"m", "length"},   {"rad", "angle"},     {"Hz", "frequency"}, {"dB", "gain"},
+        {"dBm", "level"}, {"bit/s", "rate"}, {"slots", "integer"}, {"1", "ratio"}};
     ordered_json table = table_schema(about, {});
     for_each_entry<T>([&](const auto& one) {
         const auto* type = std::find_if(std::begin(kTypes), std::end(kTypes),
                                         [&](const auto& known) { return known.first == one.unit; });
-        const SchemaKey key{one.key, type == std::end(kTypes) ? "number" : type->second, one.about};
+        using Value = std::remove_cvref_t<decltype(std::declval<T>().*one.member)>;
+        constexpr std::string_view kPlain = std::is_same_v<Value, std::string> ? "text"
+                                            : std::is_integral_v<Value>        ? "integer"
+                                                                               : "number";
+        const SchemaKey key{one.key, type == std::end(kTypes) ? kPlain : type->second, one.about};
         add_keys(table, std::span(&key, 1));
     });
     return table;
@@ -326,6 +334,7 @@ ordered_json scenario_schema() {
     properties["radio"] = table_schema("the air between radio modules", kRadio);
     properties["coordinator"] = coordinator_schema();
     properties["network"] = table_schema("between Linux boards and hosts (docs/network.md)", kNetwork);
+    properties["network"]["properties"]["wifi"] = fields_schema<wifi::WifiSettings>("its radio");
     properties["host"] = list_schema(host_schema());
     properties["bluetooth"] = table_schema("the air between Bluetooth modules", kBluetooth);
     ordered_json mission = table_schema("what the swarm is scored by", kMission, {"kind"});

@@ -31,6 +31,9 @@ ordered_json plain(std::string_view type) {
     if (type == "mass") return quantity("kg|g");
     if (type == "frequency") return quantity("Hz|kHz|MHz");
     if (type == "voltage") return quantity("V|mV");
+    if (type == "gain") return quantity("dB");
+    if (type == "level") return quantity("dBm");
+    if (type == "rate") return quantity("bit/s|kbit/s|Mbit/s|Gbit/s");
     if (type == "ratio") return {{"anyOf", {{{"type", "number"}}, quantity("%|ppm|")}}};
     if (type == "number") return {{"anyOf", {{{"type", "number"}}, quantity("")}}};
     if (type == "integer") return {{"type", "integer"}};

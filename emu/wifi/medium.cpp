@@ -1,0 +1,93 @@
+#include "emu/wifi/medium.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::wifi {
+
+using cosim::Time;
+
+namespace {
+
+constexpr double kNearest = 0.1;          // m: closer, the far field's law does not hold
+constexpr double kNoiseOfSource = -91.0;  // dBm, for which sensitivities are stated
+constexpr double kLostAtSensitivity = 0.1;
+constexpr double kOctetsOfSource = 1000.0;
+constexpr double kNeverLost = 1e-12;  // nothing is drawn for less
+
+double milliwatts(double dbm) {
+    return std::pow(10.0, dbm / 10.0);
+}
+
+/// Chance that a frame is lost which arrives so many dB above what it needs.
+double loss(double margin, std::size_t octets) {
+    const double of_source = std::min(1.0, kLostAtSensitivity * std::pow(10.0, -margin));
+    return 1.0 - std::pow(1.0 - of_source, static_cast<double>(octets) / kOctetsOfSource);
+}
+
+}  // namespace
+
+const char* name_of(Fate fate) {
+    constexpr std::array kNames{"read", "weak", "noise", "collision", "sending"};
+    return kNames[static_cast<std::size_t>(fate)];
+}
+
+Medium::Medium(const WifiSettings& settings, std::vector<std::string> names, std::vector<Position> positions,
+               std::uint64_t seed)
+    : settings_(settings), positions_(std::move(positions)) {
+    shadows_.assign(names.size(), std::vector<double>(names.size()));
+    for (std::size_t a = 0; a < names.size(); ++a)
+        for (std::size_t b = a + 1; b < names.size(); ++b) {
+            // By their names: one station more changes nothing between the others.
+            RandomStream random(seed, fmt::format("wifi shadow {} {}", std::min(names[a], names[b]),
+                                                  std::max(names[a], names[b])));
+            shadows_[a][b] = shadows_[b][a] = settings.shadowing * random.normal();
+        }
+}
+
+double Medium::received_dbm(std::size_t from, std::size_t to) const {
+    const double distance =
+        std::hypot(positions_[from][0] - positions_[to][0], positions_[from][1] - positions_[to][1]);
+    return settings_.power - settings_.loss_at_1m -
+           10.0 * settings_.exponent * std::log10(std::max(distance, kNearest)) - shadows_[from][to];
+}
+
+const Transmission& Medium::add(Transmission transmission) {
+    transmission.dbm.resize(positions_.size());
+    for (std::size_t to = 0; to < positions_.size(); ++to)
+        transmission.dbm[to] =
+            to == transmission.station ? settings_.power : received_dbm(transmission.station, to);
+    on_air_.push_back(std::move(transmission));
+    return on_air_.back();
+}
+
+Fate Medium::judge(const Transmission& transmission, std::size_t receiver, RandomStream& random) const {
+    double disturbance = 0.0;
+    for (const Transmission& other : on_air_) {
+        if (other.id == transmission.id || other.end <= transmission.start || other.start >= transmission.end)
+            continue;
+        if (other.station == receiver) return Fate::Sending;
+        disturbance += milliwatts(other.dbm[receiver]);
+    }
+    const double noise = milliwatts(settings_.noise);
+    const double needed = transmission.rate->sensitivity_dbm - kNoiseOfSource;  // above the noise, dB
+    const auto loss_in = [&](double power) {
+        return loss(transmission.dbm[receiver] - 10.0 * std::log10(power) - needed, transmission.octets);
+    };
+    if (loss_in(noise) >= 1.0) return Fate::Weak;
+    const double lost = loss_in(noise + disturbance);
+    const Fate if_lost = disturbance > noise ? Fate::Collision : Fate::Noise;
+    if (lost >= 1.0) return if_lost;
+    return lost > kNeverLost && random.uniform() < lost ? if_lost : Fate::Read;
+}
+
+void Medium::forget() {
+    Time oldest = cosim::kNever;
+    for (const Transmission& one : on_air_)
+        if (!one.over) oldest = std::min(oldest, one.start);
+    std::erase_if(on_air_, [&](const Transmission& one) { return one.over && one.end <= oldest; });
+}
+
+}  // namespace puckloop::wifi
