@@ -26,7 +26,7 @@ struct Robot {
     double uart_delay = 0.0;   ///< s by which bytes from the Linux board come later
     double uart_cut = 0.0;     ///< probability that an answer is cut; then, that the next one is too
     double uart_cut_again = 0.0;
-    double uart_edge_loss = 0.0;          ///< probability that a byte 0x00 or 0xFF to the Linux board is lost
+    double uart_edge_loss = 0.0;        ///< probability that a byte 0x00 or 0xFF to the Linux board is lost
     scenarios::LinuxDelays lateness{};  ///< of the Linux board
     double rab_poll = 0.0;  ///< s between two polls of a range-and-bearing board; 0: until none waits
     /// s: the tracker's pose is the mean over so long, centred on the row's time. What is fitted has no blur.
