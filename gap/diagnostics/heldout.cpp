@@ -20,7 +20,6 @@ double root_mean(const std::vector<double>& sums, double rows) {
     return std::sqrt(sum_of(sums) / std::max(rows, 1.0));
 }
 
-/// Errors before and after, from the squares of each block, and their ratio with a 90 % interval over blocks.
 template <class Figures>
 void compare(const std::vector<double>& before, const std::vector<double>& after, double rows,
              std::uint64_t seed, Figures& to) {
@@ -46,6 +45,11 @@ void compare(const std::vector<double>& before, const std::vector<double>& after
 }
 
 }  // namespace
+
+void compare_errors(const std::vector<double>& before, const std::vector<double>& after, double rows,
+                    std::uint64_t seed, HeldObservable& to) {
+    compare(before, after, rows, seed, to);
+}
 
 HeldFigures held_figures(const Study& study, const Selection& selection, std::uint64_t seed) {
     const auto& observables = study.model().observables();

@@ -16,6 +16,11 @@ struct HeldFigures {
     std::vector<HeldObservable> observables;
 };
 
+/// Errors before and after, from the squares of each block and how many rows there are, and their ratio with
+/// a 90 % interval over blocks.
+void compare_errors(const std::vector<double>& before, const std::vector<double>& after, double rows,
+                    std::uint64_t seed, HeldObservable& to);
+
 /// `seed` of the bootstrap over blocks.
 HeldFigures held_figures(const Study& study, const Selection& selection, std::uint64_t seed);
 

@@ -415,6 +415,16 @@ double Study::bic_of(const Fitted& fitted, std::size_t parameters) const {
            static_cast<double>(parameters) * std::log(static_cast<double>(std::max<std::size_t>(rows(), 2)));
 }
 
+Fitted Study::without_fold(std::size_t fold, const Fit& whole, const Effort& effort) const {
+    Weights others;
+    for (const auto& folds : fold_) {
+        others.emplace_back();
+        for (const int own : folds)
+            others.back().push_back(own != static_cast<int>(fold) ? 1.0 : 0.0);
+    }
+    return fit(*model_, whole.freed, whole.fitted.state, others, effort);
+}
+
 HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
     HeldOut held;
     const auto& observables = model_->observables();
@@ -423,13 +433,7 @@ HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
         held.mean.emplace_back(observable.y.size(), 0.0);
     }
     in_parallel(folds_, threads_, [&](std::size_t k) {
-        Weights others;
-        for (const auto& folds : fold_) {
-            others.emplace_back();
-            for (const int fold : folds)
-                others.back().push_back(fold != static_cast<int>(k) ? 1.0 : 0.0);
-        }
-        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, others, effort);
+        const Fitted part = without_fold(k, whole, effort);
         const Prediction prediction = model_->predicted(part.state.values);
         const auto costs = costs_at(*model_, part.state, prediction);
         // What the noise loses for being off the simulator's claim is lost by every row alike.

@@ -87,6 +87,8 @@ class Study {
     /// Cross-validation of a set that was fitted to all rows, each part fitted again with `effort` from
     /// there.
     HeldOut hold_out(const Fit& fit, const Effort& effort = kPart) const;
+    /// A set fitted to the rows of all folds but one, from where the fit to all rows ended.
+    Fitted without_fold(std::size_t fold, const Fit& fit, const Effort& effort = kPart) const;
     /// What `after` gains over `before` on rows that were not fitted, of all observables or of one.
     Gain gain(const HeldOut& before, const HeldOut& after, std::optional<std::size_t> observable = {}) const;
 

@@ -118,6 +118,7 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     for (const auto& [name, value] : simulator)
         text += parameter_line(name, value);
     text += tables;
+    text += extension_toml(verdict.extension);
     if (!fitted.empty())
         text += "\n# Of the measuring chain, or without a counterpart in the world model.\n[measurement]\n";
     for (const auto& [name, value] : fitted)

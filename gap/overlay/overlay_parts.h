@@ -13,8 +13,13 @@ namespace puckloop::gap {
 /// Parameters by name.
 using Values = std::map<std::string, double>;
 
+struct Extension;
+
 /// A fitted number, taken out where it is there.
 std::optional<double> take(Values& fitted, const std::string& name);
+
+/// The learnt tables as [[extension]] tables; empty where a run takes none of it.
+std::string extension_toml(const Extension& extension);
 
 /// Does an overlay hand a forward model's parameter on to a run, under [parameters], [uart], [linux] or
 /// [clock]? The others stand under [measurement], which a run passes over.

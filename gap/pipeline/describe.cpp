@@ -3,6 +3,7 @@
 #include "gap/decide/decide.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
+#include "gap/extension/extend.h"
 #include "gap/fit/intervals.h"
 #include "gap/next_experiment/suggest.h"
 #include "gap/overlay/overlay_parts.h"
@@ -181,6 +182,18 @@ void add_predictive(const Study& study, const Judged& judged, std::uint64_t seed
     }
 }
 
+/// Where something is wrong that no name explains.
+void add_extension(const Study& study, const Chosen& chosen, std::uint64_t seed, Verdict& verdict) {
+    const bool forms = std::ranges::any_of(verdict.free_forms, [](const FreeForm& one) { return one.clear; });
+    if (verdict.decision == Decision::NoEffect)
+        verdict.extension.not_asked = "nothing is wrong";
+    else if (verdict.decision == Decision::Named && verdict.leftovers.empty() && !forms)
+        verdict.extension.not_asked = "nothing remains beside what is named";
+    else
+        verdict.extension = extension_of(study, chosen.selection.none, chosen.final, seed);
+    verdict.extension.sentence = extension_sentence(verdict.extension);
+}
+
 }  // namespace
 
 bool fit_failed(double delta_bic, std::size_t parameters, std::size_t rows) {
@@ -221,6 +234,7 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.suggestions = verdict.decision == Decision::NotIdentifiable
                               ? identifying(study, judged.chosen.selection.none, judged.not_identified)
                               : suggestions_for(study, judged.chosen.selection);
+    add_extension(study, judged.chosen, seed, verdict);
     verdict.heldout.sentence = gain_sentence(verdict.heldout);
     verdict.summary = summary_of(verdict);
     return verdict;

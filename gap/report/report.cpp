@@ -92,6 +92,7 @@ std::string report_html(const Experiment& experiment, const Verdict& verdict) {
     out += parameters_section(verdict);
     out += rivals_section(verdict);
     out += free_form_section(verdict);
+    out += extension_section(verdict);
     out += structure_section(experiment, verdict);
     out += evidence_section(verdict);
     out += reading_section();

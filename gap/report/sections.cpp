@@ -168,7 +168,7 @@ std::string free_form_section(const Verdict& verdict) {
             fmt::format(
                 "<h2>Unexplained: the shape of what remains</h2>\n<p>A correction without a mechanism, made "
                 "after the named effects: it predicts runs that it did not see better than they do, by "
-                "{:.0f} % of all that is gained. It names nothing and is not part of the overlay.</p>\n",
+                "{:.0f} % of all that is gained. It names nothing; what of it a run can take is below.</p>\n",
                 100 * verdict.unexplained_share) +
             table.html();
     return out;

@@ -24,6 +24,8 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
 std::string predictive_section(const Verdict& verdict);
 /// What came nearest where nothing is named, and the free-form correction of what is left.
 std::string free_form_section(const Verdict& verdict);
+/// Errors as it is, with the named causes, with a term without a mechanism; the term in pictures.
+std::string extension_section(const Verdict& verdict);
 std::string evidence_section(const Verdict& verdict);
 std::string reading_section();
 

@@ -35,6 +35,17 @@ std::string others_words(const FittedParameter& p) {
     return fmt::format("; {} fit{} as well", listed(words, "and"), p.as_likely.size() == 1 ? "s" : "");
 }
 
+/// "motion.turn" -> "turn"; of what the world has no place for the observable's own name.
+std::string extended_words(const Extended& one) {
+    const std::string name = plain_observable(one.observable);
+    std::string text = fmt::format("the error of {} from {} to {}", name, quantity(one.named, one.unit),
+                                   quantity(one.extended, one.unit, 0, one.named));
+    if (!one.formula.empty())
+        text += fmt::format(" (nearly {} = {}, in SI units)", one.quantity.empty() ? name : one.quantity,
+                            one.formula);
+    return text;
+}
+
 /// What would tell rivals apart.
 std::string advice_sentence(const std::vector<Suggestion>& suggestions) {
     if (suggestions.empty()) return "None of the experiments that were looked at would.";
@@ -176,6 +187,31 @@ std::string summary_of(const Verdict& verdict) {
         titles.push_back(cause.title);
     if (!titles.empty())
         text += fmt::format(" What comes nearest, but {}: {}.", verdict.doubt, listed(titles, "and"));
+    return text;
+}
+
+std::string extension_sentence(const Extension& extension) {
+    if (!extension.not_asked.empty()) return {};
+    std::vector<std::string> lowered, outside;
+    for (const Extended& one : extension.observables)
+        if (one.kept) (one.quantity.empty() ? outside : lowered).push_back(extended_words(one));
+    const std::string where =
+        extension.by_runs ? "runs that had no part in it" : "stretches of runs that had no part in it";
+    if (lowered.empty() && outside.empty())
+        return fmt::format(
+            "A term without a mechanism, learnt from what remains, gains nothing for sure on {}: "
+            "none is written.",
+            where);
+    std::string text;
+    if (!lowered.empty())
+        text =
+            fmt::format("A term without a mechanism, learnt from what remains, lowers on {} {}; it is in the "
+                        "overlay.",
+                        where, listed(lowered, "and"));
+    if (!outside.empty())
+        text += fmt::format("{}Such a term lowers on {} {}, but it is not written: a run has no "
+                            "place for it, or it rests on what nobody measured.",
+                            text.empty() ? "" : " ", where, listed(outside, "and"));
     return text;
 }
 

@@ -24,6 +24,8 @@ std::string form_words(const FormVerdict& form);
 /// Why an effect was not tried: "needs a or b to be recorded" for a candidate's "needs a|b to be recorded".
 std::string plain_remark(std::string remark);
 std::string gain_sentence(const Held& held);
+/// What a term without a mechanism gains, and whether a run takes it.
+std::string extension_sentence(const Extension& extension);
 /// One or two sentences at the top of the report.
 std::string summary_of(const Verdict& verdict);
 

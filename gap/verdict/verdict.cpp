@@ -100,6 +100,37 @@ static void to_json(Json& json, const FreeForm& form) {
             {"terms", form.terms}};
 }
 
+static void to_json(Json& json, const LearntTable& table) {
+    json = Json::object();
+    if (table.sensor >= 0) json["sensor"] = table.sensor;
+    json["times"] = table.times;
+    json["over"] = table.over;
+    json["at"] = table.at;
+    json["value"] = table.value;
+    json["sd"] = table.sd;
+    json["run_spread"] = table.run_spread;
+}
+
+static void to_json(Json& json, const Extended& one) {
+    json = {{"observable", one.observable},
+            {"unit", one.unit},
+            {"adds_to", one.quantity},
+            {"adds_to_unit", one.quantity_unit},
+            {"before", one.before},
+            {"named", one.named},
+            {"extended", one.extended},
+            {"ratio", one.ratio},
+            {"low", one.low},
+            {"high", one.high},
+            {"score_gain", one.gain},
+            {"sd", one.gain_sd},
+            {"blocks_better", one.better},
+            {"blocks", one.blocks},
+            {"kept", one.kept},
+            {"formula", one.formula},
+            {"tables", one.tables}};
+}
+
 namespace {
 
 /// Less than this share of an error is no change.
@@ -205,6 +236,11 @@ std::string to_json(const Verdict& verdict) {
           {"chosen", verdict.confirmation.chosen},
           {"gain", verdict.confirmation.gain},
           {"sentence", verdict.confirmation.sentence}}},
+        {"extension",
+         {{"not_asked", verdict.extension.not_asked},
+          {"by_runs", verdict.extension.by_runs},
+          {"sentence", verdict.extension.sentence},
+          {"observables", verdict.extension.observables}}},
         {"tried", verdict.tried},
         {"nuisance", verdict.nuisance},
         {"posterior_predictive", verdict.predictive},

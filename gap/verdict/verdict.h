@@ -6,6 +6,7 @@
 #include "gap/decide/confirmation.h"
 #include "gap/decide/decide.h"
 #include "gap/predictive/predictive.h"
+#include "gap/verdict/extension.h"
 
 #include <cmath>
 #include <cstdint>
@@ -162,6 +163,7 @@ struct Verdict {
     std::vector<Cause> nearest;        ///< where nothing stands as a cause: what came nearest, and left much
     Grounds grounds;                   ///< of the causes, as they were selected
     Confirmation confirmation;         ///< of what is named, on runs that had no part in it
+    Extension extension;               ///< what remains, as a term without a mechanism
     std::vector<Tried> tried;
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;

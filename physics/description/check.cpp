@@ -32,6 +32,7 @@ class Checker {
 
     void run() {
         check_parameters("parameters", {}, world_.parameters, false);
+        check_extension();
         range("world", {}, "ambient_light", world_.ambient_light, 0.0, kBrightest);
         check_arena();
         for (const auto& w : world_.walls)
@@ -271,6 +272,10 @@ class Checker {
     void no_overlap(const Body& body, const Body& other) const {
         if (overlap(body.shape, other.shape))
             fail(body.what, body.place, "overlaps " + other.what, "a free place");
+    }
+    void check_extension() const {
+        for (const ExtensionTerm& term : world_.extension)
+            if (const auto wrong = problem_of(term)) fail("extension", {}, wrong->problem, wrong->expected);
     }
     void check_recording() const {
         const double steps = world_.recording.period * 1e3;

@@ -3,6 +3,7 @@
 // processes as JSON text. Metres, radians, kilograms; x forward (east), y left (north), heading from +x
 // counter-clockwise; the floor is z = 0.
 
+#include "physics/description/extension.h"
 #include "physics/description/floor_image.h"
 
 #include <cstdint>
@@ -150,6 +151,7 @@ struct World {
     std::vector<Robot> robots;
     std::vector<Booth> booths{};
     std::map<std::string, double> parameters;  ///< for all robots and the world
+    std::vector<ExtensionTerm> extension{};    ///< for all robots
     bool ircom = false;                        ///< robots' and TAMs' infra-red light reaches others
     Recording recording;
 };

@@ -29,8 +29,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Booth, name, x, y, heading, reflectivity, sig
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board_signals, ground_signals, rab,
                                    camera, rab_signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recording, directory, period, log)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExtensionAxis, over, at)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExtensionTerm, adds_to, sensor, times, over, value, sd, run_spread)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(World, node_name, file, seed, ambient_light, arena, walls, boxes,
-                                   cylinders, lamps, speakers, patches, robots, booths, parameters, ircom,
-                                   recording)
+                                   cylinders, lamps, speakers, patches, robots, booths, parameters, extension,
+                                   ircom, recording)
 
 }  // namespace puckloop::physics

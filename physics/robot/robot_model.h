@@ -5,6 +5,7 @@
 #include "physics/dynamics/floor_motion.h"
 #include "physics/robot/battery.h"
 #include "physics/robot/delay_line.h"
+#include "physics/robot/extension.h"
 #include "physics/robot/wheel_drive.h"
 #include "physics/sensors/accelerometer.h"
 #include "physics/sensors/ground.h"
@@ -32,6 +33,8 @@ class RobotModel {
     double wheel_speed(Side side, double seconds, double wheel_angle);
 
     const FloorMotion& floor_motion() const { return floor_motion_; }
+    /// The floor under it does not move, whatever it does.
+    bool floor_is_still() const { return floor_motion_.still() && !extension_.moves(); }
     /// How the floor moves under the robot in the step that ends at `seconds`; not asked for where it is
     /// still.
     FloorVelocity floor_velocity(const RobotState& state, double seconds);
@@ -68,8 +71,15 @@ class RobotModel {
     Surroundings surroundings(double seconds) const;
     void sense_proximity(const Surroundings& now);
     void light_the_floor();
-    void sample_ground(double seconds);
+    void sample_ground(const Surroundings& now);
     void sense_turning(const RobotState& state);
+    /// What the terms without a mechanism add to how it goes over the floor; once a step.
+    void add_motion(FloorVelocity& floor, const RobotState& state, double seconds, bool driven);
+    /// What they add to readings of so many sensors; `each` fills in what a sensor knows besides.
+    template <std::size_t N, class Each>
+    void add_counts(Extended quantity, std::array<double, N>& counts, double most, const Surroundings& now,
+                    const Each& each) const;
+    void add_force(std::array<double, 3>& counts, const RobotState& state, const Surroundings& now) const;
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
 
@@ -79,6 +89,11 @@ class RobotModel {
     std::array<double, 2> asked_angle_{};
     FloorMotion floor_motion_;
     std::array<double, 2> rolled_{};  // rad, when the floor's motion was last asked for
+    Extension extension_;
+    DelayLine<2> late_rolled_;  // rad, of both wheels
+    double speed_ = 0.0, turn_rate_ = 0.0,
+           travelled_ = 0.0;  // m/s, rad/s, m: by the wheels; kept where asked for
+    std::array<FacedSurface, kProximitySensors> faced_{};  // likewise
     ProximityRing proximity_;
     ProximityNoise proximity_noise_;
     std::array<double, kProximitySensors> reflected_{};

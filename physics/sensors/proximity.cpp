@@ -107,6 +107,20 @@ std::array<double, kProximitySensors> ProximityRing::reflected(const SensorView&
     return own;
 }
 
+std::array<FacedSurface, kProximitySensors> ProximityRing::faced(const SensorView& view) const {
+    std::array<FacedSurface, kProximitySensors> faced;
+    const double cosine = std::cos(view.robot.heading);
+    const double sine = std::sin(view.robot.heading);
+    for (std::size_t i = 0; i < kProximitySensors; ++i) {
+        faced[i].distance = parameters_.reach;
+        const Ray ray = in_world(view.robot, cosine, sine, rays_[i][rays_[i].size() / 2]);
+        for (const Shape* shape : view.shapes)
+            if (const auto hit = chord_before(*shape, ray.x, ray.y, ray.dx, ray.dy, faced[i].distance))
+                faced[i] = {std::max(hit->in, 0.0), std::acos(std::clamp(hit->cosine, 0.0, 1.0))};
+    }
+    return faced;
+}
+
 std::array<double, kProximitySensors>
 ProximityRing::answer(const std::array<double, kProximitySensors>& reflected, const Surroundings& now) const {
     const auto& p = parameters_;

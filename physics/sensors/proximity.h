@@ -17,12 +17,19 @@ namespace puckloop::physics {
 /// reach.
 double proximity_response(const ProximityParameters& parameters, double distance);
 
+/// What a sensor's middle ray meets.
+struct FacedSurface {
+    double distance = 0.0;  ///< m; the reach where it meets nothing
+    double angle = 0.0;     ///< rad between ray and normal
+};
+
 class ProximityRing {
   public:
     explicit ProximityRing(const ProximityParameters& parameters);
 
     /// What each sensor sees of its own light, by the response curve alone.
     std::array<double, kProximitySensors> reflected(const SensorView& view) const;
+    std::array<FacedSurface, kProximitySensors> faced(const SensorView& view) const;
     /// What the readings become of it: crosstalk, gains, offsets, sag. Neither noise nor a converter's range.
     std::array<double, kProximitySensors> answer(const std::array<double, kProximitySensors>& reflected,
                                                  const Surroundings& now) const;

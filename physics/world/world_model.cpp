@@ -84,7 +84,7 @@ void WorldModel::move_bodies() {
         const double left = robots_[i].wheel_speed(Side::Left, seconds(), wheel[0]);
         const double right = robots_[i].wheel_speed(Side::Right, seconds(), wheel[1]);
         dynamics_.drive(i, left, right);
-        if (!robots_[i].floor_motion().still())
+        if (!robots_[i].floor_is_still())
             dynamics_.move_floor(i, robots_[i].floor_velocity(dynamics_.robot(i), seconds()));
     }
     done(StepPart::Inputs);

@@ -2,6 +2,7 @@
 
 #include "physics/description/description.h"
 #include "scenarios/reader/read_scenario.h"
+#include "scenarios/tables/extension_table.h"
 #include "scenarios/tables/linux_keys.h"
 #include "scenarios/tables/world_tables.h"
 #include "scenarios/values/reader.h"
@@ -101,6 +102,8 @@ void apply_overlay(Scenario& scenario, const std::filesystem::path& file) {
     if (const TomlValue* table = top.table("parameters"))
         for (const auto& [parameter, value] : read_parameters(name, "parameters", *table))
             scenario.world.parameters[parameter] = value;
+    for (const TomlValue* table : top.tables("extension"))
+        scenario.world.extension.push_back(read_extension(name, *table));
     for (const TomlValue* table : top.tables("robot"))
         apply_robot(name, *table, scenario);
     if (const TomlValue* table = top.table("uart")) apply_uart(name, *table, scenario);

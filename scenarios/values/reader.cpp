@@ -151,6 +151,27 @@ std::vector<std::vector<double>> Reader::quantity_lists(std::string_view key, Di
     return result;
 }
 
+const TomlArray& Reader::list(std::string_view key, const TomlValue& value) {
+    const auto* array = std::get_if<TomlArray>(&value.data);
+    if (!array) fail(key, fmt::format("{} is not a list", key), "numbers in brackets");
+    return *array;
+}
+
+std::vector<double> Reader::bare_numbers(std::string_view key) {
+    const TomlValue* value = find(key);
+    if (!value) return {};
+    return numbers(key, *value, Dimension::Number, list(key, *value).size());
+}
+
+std::vector<std::vector<double>> Reader::bare_number_lists(std::string_view key) {
+    const TomlValue* value = find(key);
+    std::vector<std::vector<double>> result;
+    if (!value) return result;
+    for (const TomlValue& one : list(key, *value))
+        result.push_back(numbers(key, one, Dimension::Number, list(key, one).size()));
+    return result;
+}
+
 std::string Reader::text(std::string_view key) {
     const TomlValue& value = require(key);
     const auto* string = std::get_if<std::string>(&value.data);

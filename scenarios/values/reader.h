@@ -36,6 +36,10 @@ class Reader {
     /// A list of lists of exactly `count` quantities each.
     std::vector<std::vector<double>> quantity_lists(std::string_view key, Dimension dimension,
                                                     std::size_t count);
+    /// A list of bare numbers, of any length; empty where absent.
+    std::vector<double> bare_numbers(std::string_view key);
+    /// A list of such lists.
+    std::vector<std::vector<double>> bare_number_lists(std::string_view key);
     std::string text(std::string_view key);
     std::string text(std::string_view key, std::string_view fallback);
     std::int64_t integer(std::string_view key, std::int64_t fallback, std::int64_t low, std::int64_t high);
@@ -73,6 +77,7 @@ class Reader {
     double number(std::string_view key, const TomlValue& value, Dimension dimension);
     std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension,
                                 std::size_t count);
+    const TomlArray& list(std::string_view key, const TomlValue& value);
 
     std::string file_;
     std::string where_;

@@ -1,7 +1,7 @@
 #include "selftest/emulate/record_rab.h"
 
-#include "reproductions/rab/measure.h"
 #include "physics/description/parameters.h"
+#include "reproductions/rab/measure.h"
 
 #include <fmt/format.h>
 

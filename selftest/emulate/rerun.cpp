@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace puckloop::gap::emulate {
 
 namespace {
@@ -31,6 +33,9 @@ double longest_stand(const Verdict& verdict) {
     for (const Cause& cause : verdict.causes)
         for (const FittedParameter& parameter : cause.parameters)
             if (parameter.name.find("warmup") != std::string::npos) return kLongest;
+    for (const Extended& one : verdict.extension.observables)
+        for (const LearntTable& table : one.tables)
+            if (std::ranges::find(table.over, "time") != table.over.end()) return kLongest;
     return 0.0;
 }
 
@@ -93,8 +98,9 @@ RerunObservable observable_of(const std::string& name, const std::string& unit,
 Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) try {
     Rerun result;
     result.asked = true;
-    if (verdict.causes.empty()) {
-        result.not_done = "no cause was named, so there is nothing to add to the simulation";
+    if (verdict.causes.empty() && !verdict.extension.enters() && !options.always) {
+        result.not_done = "nothing was named or learnt that a run takes, so there is nothing to add to the "
+                          "simulation";
         return result;
     }
     if (experiment.kind == Kind::Motion && options.firmware.empty() &&

@@ -125,6 +125,38 @@ TEST_CASE("an overlay replaces parameters and nothing else") {
     CHECK_THROWS_WITH(apply_overlay(scenario, arena.path()), Catch::Contains("unknown key 'arena'"));
 }
 
+TEST_CASE("an overlay's terms without a mechanism are read, and what is wrong with one has its line") {
+    const TemporaryFile file(kArena + kRobot);
+    const auto with = [&](const std::string& keys) {
+        Scenario scenario = read_scenario(file.path());
+        const TemporaryFile overlay("[parameters]\ncontact.mu = 0.4\n[[extension]]\n" + keys);
+        apply_overlay(scenario, overlay.path());
+        return scenario.world.extension;
+    };
+    const auto terms = with("adds_to = \"motion.turn\"\ntimes = \"speed\"\nover = [\"speed\", \"time\"]\n"
+                            "at = [[0, 0.1], [0, 5, 10]]\nvalue = [0, 1, 2, 3, 4, 5]\n"
+                            "sd = [0, 0, 0, 0, 0, 0.1]\nrun_spread = 0.02\n"
+                            "[[extension]]\nadds_to = \"ground.reading\"\nsensor = 2\nvalue = [-4]\n");
+    REQUIRE(terms.size() == 2);
+    CHECK(terms[0].over[1].at == std::vector<double>{0, 5, 10});
+    CHECK(terms[0].run_spread == 0.02);
+    CHECK(terms[1].sensor == 2);
+    CHECK(terms[1].value == std::vector<double>{-4});
+    const auto refused = [&](const std::string& keys, const std::string& place, const std::string& problem) {
+        CHECK_THROWS_WITH(with(keys), Catch::Contains(place) && Catch::Contains(problem));
+    };
+    const std::string turn = "adds_to = \"motion.turn\"\n";
+    refused("value = [1]\n", "line 3", "'adds_to' is missing");
+    refused("adds_to = \"motion.spin\"\nvalue = [1]\n", "line 4", "unknown quantity 'motion.spin'");
+    refused(turn + "over = \"grey\"\nat = [[0, 1]]\nvalue = [0, 1]\n", "line 5", "does not know 'grey'");
+    refused(turn + "over = \"speed\"\nat = [0, 1]\nvalue = [0, 1]\n", "line 6", "at is not a list");
+    refused(turn + "over = \"speed\"\nat = [[1, 0]]\nvalue = [0, 1]\n", "line 6", "do not rise");
+    refused(turn + "over = \"speed\"\nvalue = [0, 1]\n", "line 3", "0 lists of places for 1 covariates");
+    refused(turn + "over = \"speed\"\nat = [[0, 1]]\nvalue = [0]\n", "line 7", "1 values of a table of 2");
+    refused(turn + "value = [nan]\n", "line 5", "value");
+    refused(turn + "value = [1]\nsmooth = true\n", "line 6", "unknown key 'smooth'");
+}
+
 TEST_CASE("an overlay acts on lines and Linux boards of robots that have them") {
     const TemporaryFile file(
         kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\noversleep = \"1 ms\"\n" +

@@ -85,6 +85,13 @@ void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict
     for (const auto& rival : verdict.rivals)
         fmt::print("  rival of {}: {} ({}), delta BIC {:.1f}\n", rival.instead_of, rival.cause.name,
                    rival.cause.number, rival.delta_bic);
+    for (const auto& one : verdict.extension.observables)
+        fmt::print(
+            "  error of {} on runs not fitted: {:.4g}{} as it is, {:.4g} with names, {:.4g} with the term "
+            "that was learnt{}\n",
+            gap::plain_observable(one.observable), one.before, gap::unit_suffix(one.unit), one.named,
+            one.extended, one.kept ? "" : " (no clear gain)");
+    if (!verdict.extension.sentence.empty()) fmt::print("{}\n", verdict.extension.sentence);
     constexpr double kLeastP = 1e-300;  // by a double no less
     constexpr std::size_t kLines = 6;   // the clearest come first; all are in gap.json and the report
     std::vector<std::string> printed;
@@ -160,7 +167,7 @@ void analyse_folder(const FitRequest& request) {
     tell_verdict(experiment, verdict);
     if (request.out.empty()) return;
     write_beside(overlay, gap::overlay_toml(experiment, verdict));
-    if (request.rerun || (!request.no_rerun && !verdict.causes.empty()))
+    if (request.rerun || (!request.no_rerun && (!verdict.causes.empty() || verdict.extension.enters())))
         run_again(request, experiment, verdict);
     write_beside(json, gap::to_json(verdict));
     write_beside(page, gap::report::report_html(experiment, verdict));

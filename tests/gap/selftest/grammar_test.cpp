@@ -428,3 +428,27 @@ TEST_CASE("a drawn case is analysed and judged from its folder") {
     CHECK(cases[0].error == "");
     std::filesystem::remove_all(drawing.scratch);
 }
+
+TEST_CASE("errors of what went in are given no name: a drawn subset of the quick kinds") {
+    // By a seed that was looked at once; --class noisy-input draws as many as one has time for.
+    constexpr std::uint64_t kDrawnOnce = 20261130;
+    constexpr std::pair<const char*, std::size_t> kCases[] = {
+        {"microphone", 3}, {"microphone", 10}, {"accelerometer", 5}, {"timing", 13}};
+    for (const auto& [kind, number] : kCases) {
+        Drawing drawing;
+        drawing.cases = 14;
+        drawing.seed = kDrawnOnce;
+        drawing.of = Class::NoisyInput;
+        drawing.only = {number};
+        drawing.scratch = tests::scratch_path("gap_noisy");
+        const auto cases = run_drawn(drawing);
+        std::filesystem::remove_all(drawing.scratch);
+        REQUIRE(cases.size() == 1);
+        const Outcome& one = cases.front();
+        INFO(one.kind << ": " << one.text << ": " << one.said << ' '
+                      << (one.names.empty() ? "" : one.names.front()));
+        CHECK(one.kind == kind);
+        CHECK(one.error == "");
+        CHECK(one.said != "named");
+    }
+}

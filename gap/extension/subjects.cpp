@@ -1,0 +1,184 @@
+#include "gap/extension/subjects.h"
+
+#include "physics/description/extension.h"
+#include "physics/description/robot_constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kStands = 1e-6;         // m of both wheels in a row: less is standing
+constexpr double kMostDirections = 0.9;  // of a turn: angles that go further round are periodic
+
+/// A column of the experiment as the world calls it.
+struct ColumnName {
+    const char *column, *known;
+    bool factor = false;
+};
+
+constexpr ColumnName kDrive[] = {{"t_s", "time"}, {"theta_rad", "heading"}, {"battery_v", "battery"}};
+constexpr ColumnName kProximity[] = {
+    {"distance_m", "distance"}, {"angle_rad", "angle"}, {"t_s", "time"},
+    {"battery_v", "battery"},   {"ambient", "ambient"}, {"motor_speed", "motor_speed"}};
+constexpr ColumnName kGround[] = {{"grey", "grey"},         {"t_s", "time"},
+                                  {"battery_v", "battery"}, {"ambient", "ambient"},
+                                  {"speed", "speed"},       {"motor_speed", "motor_speed"},
+                                  {"pitch_rad", "pitch"},   {"acceleration", "acceleration"}};
+constexpr ColumnName kMicrophone[] = {
+    {"t_s", "time"}, {"battery_v", "battery"}, {"motor_speed", "motor_speed"}};
+constexpr ColumnName kAccelerometer[] = {
+    {"pitch_rad", "pitch"},   {"roll_rad", "roll"},           {"t_s", "time"},
+    {"battery_v", "battery"}, {"motor_speed", "motor_speed"}, {"speed", "speed"}};
+// What the world has no place for is learnt all the same: what it gains is of interest.
+constexpr ColumnName kRab[] = {{"distance_m", "distance"},
+                               {"true_bearing_rad", "true_bearing"},
+                               {"sender_bearing_rad", "sender_bearing"},
+                               {"t_s", "time"}};
+constexpr ColumnName kTiming[] = {
+    {"t_s", "time"}, {"bytes", "bytes"}, {"i2c_reads", "i2c_reads"}, {"load", "load"}};
+
+std::span<const ColumnName> columns_known(Kind kind) {
+    switch (kind) {
+    case Kind::Motion:
+        return kDrive;
+    case Kind::Proximity:
+        return kProximity;
+    case Kind::Ground:
+        return kGround;
+    case Kind::Microphone:
+        return kMicrophone;
+    case Kind::Accelerometer:
+        return kAccelerometer;
+    case Kind::Rab:
+        return kRab;
+    default:
+        return kTiming;
+    }
+}
+
+const char* sensor_column(Kind kind) {
+    return kind == Kind::Microphone ? "mic" : kind == Kind::Rab ? "receiver" : "sensor";
+}
+
+std::string quantity_of(Kind kind, const std::string& observable) {
+    switch (kind) {
+    case Kind::Motion:
+        return observable == "along"    ? "motion.forward"
+               : observable == "across" ? "motion.left"
+                                        : "motion.turn";
+    case Kind::Proximity:
+        return "proximity.reading";
+    case Kind::Ground:
+        return "ground.reading";
+    case Kind::Microphone:
+        return "microphone.level";
+    case Kind::Accelerometer:
+        return "accelerometer." + observable.substr(1);
+    default:
+        return {};
+    }
+}
+
+std::string unit_of_known(const std::string& name) {
+    const auto known = physics::known_named(name);
+    if (known) return physics::extension_covariates()[static_cast<std::size_t>(*known)].unit;
+    return name.ends_with("bearing") ? "rad" : "1";
+}
+
+std::vector<double> of_column(const Experiment& experiment, const Observable& observable, const char* name) {
+    std::vector<double> values(observable.y.size(), NAN);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto& column = experiment.runs[observable.run[i]].column(name);
+        if (observable.row[i] < column.size()) values[i] = column[observable.row[i]];
+    }
+    return values;
+}
+
+/// What the wheels say of each row of a drive.
+void add_wheels(const Experiment& experiment, const WheelRows& wheels, const Observable& observable,
+                Subject& subject) {
+    const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
+    WorldCovariate speed{"speed", "m/s", {}, true}, turn_rate{"turn_rate", "rad/s", {}, true},
+        travelled{"travelled", "m", {}};
+    double way = 0.0;
+    for (std::size_t i = 0; i < observable.y.size(); ++i) {
+        const bool begins = observable.starts[i] != 0;
+        if (begins) way = 0.0;
+        const double seconds = begins ? 0.0 : wheels.time[i] - wheels.time[i - 1];
+        const double left = begins ? 0.0 : wheels.left[i], right = begins ? 0.0 : wheels.right[i];
+        const bool moved = seconds > 0 && (std::abs(left) > kStands || std::abs(right) > kStands);
+        way += std::abs(left + right) / 2;
+        subject.span[i] = moved ? seconds : 0.0;
+        speed.value.push_back(moved ? (left + right) / 2 / seconds : 0.0);
+        turn_rate.value.push_back(moved ? (right - left) / axle / seconds : 0.0);
+        travelled.value.push_back(way);
+    }
+    for (WorldCovariate* one : {&speed, &turn_rate, &travelled})
+        subject.covariates.push_back(std::move(*one));
+}
+
+void wrap(WorldCovariate& one) {
+    if (one.unit != "rad" || one.name == "angle" || one.name == "pitch" || one.name == "roll") return;
+    for (double& value : one.value)
+        value = std::remainder(value, 2 * std::numbers::pi);
+    const auto known = [](double value) { return std::isfinite(value); };
+    if (std::ranges::none_of(one.value, known)) return;
+    double low = INFINITY, high = -INFINITY;
+    for (const double value : one.value)
+        if (known(value)) low = std::min(low, value), high = std::max(high, value);
+    one.periodic = high - low > kMostDirections * 2 * std::numbers::pi;
+}
+
+/// A covariate that is not known in every row is none: the term would act in some rows only.
+bool usable(const WorldCovariate& one) {
+    return std::ranges::all_of(one.value, [](double value) { return std::isfinite(value); }) &&
+           std::ranges::any_of(one.value, [&](double value) { return value != one.value.front(); });
+}
+
+}  // namespace
+
+std::vector<Subject> subjects_of(const Experiment& experiment, const Model& model,
+                                 const std::vector<double>& values, const Prediction& prediction) {
+    std::vector<Subject> subjects;
+    const auto& observables = model.observables();
+    const WheelRows wheels = experiment.kind == Kind::Motion ? model.wheels(values) : WheelRows{};
+    for (std::size_t o = 0; o < observables.size(); ++o) {
+        const Observable& observable = observables[o];
+        if (observable.noise == NoiseKind::Event || observable.fixed_sd > 0 || observable.y.empty()) continue;
+        Subject subject;
+        subject.observable = o;
+        subject.quantity = quantity_of(experiment.kind, observable.name);
+        if (const auto extended = physics::extended_named(subject.quantity))
+            subject.quantity_unit = physics::extended_quantities()[static_cast<std::size_t>(*extended)].unit;
+        else
+            subject.quantity_unit = observable.unit;
+        subject.sums = adds_up(observable);
+        subject.run = observable.run;
+        subject.starts = observable.starts;
+        subject.span.assign(observable.y.size(), 1.0);
+        for (std::size_t i = 0; i < observable.y.size(); ++i)
+            subject.error.push_back(observable.instrument.at_end(observable.y[i])
+                                        ? NAN
+                                        : observable.y[i] - shown(prediction[o], i));
+        if (experiment.kind == Kind::Motion) add_wheels(experiment, wheels, observable, subject);
+        for (const ColumnName& one : columns_known(experiment.kind)) {
+            WorldCovariate covariate{one.known, unit_of_known(one.known),
+                                     of_column(experiment, observable, one.column), one.factor};
+            wrap(covariate);
+            if (usable(covariate)) subject.covariates.push_back(std::move(covariate));
+        }
+        if (!subject.sums) subject.covariates.push_back({"level", observable.unit, prediction[o].mean, true});
+        std::erase_if(subject.covariates, [](const WorldCovariate& one) { return !usable(one); });
+        for (const double one : of_column(experiment, observable, sensor_column(experiment.kind)))
+            subject.sensor.push_back(std::isfinite(one) ? static_cast<int>(std::lround(one)) : 0);
+        subject.sensors = *std::ranges::max_element(subject.sensor) + 1;
+        subjects.push_back(std::move(subject));
+    }
+    return subjects;
+}
+
+}  // namespace puckloop::gap
