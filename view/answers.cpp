@@ -1,7 +1,9 @@
 #include "view/answers.h"
 
 #include "view/bytes.h"
+#include "view/camera_pictures.h"
 #include "view/page_parts.h"
+#include "view/serial_bytes.h"
 
 #include <nlohmann/json.hpp>
 
@@ -85,6 +87,34 @@ std::optional<Content> Answers::find(const EventReader& events, std::string_view
     return Content{kBinary, std::move(out)};
 }
 
+std::vector<std::string> Answers::robot_names() const {
+    const auto& all = recording_.stations();
+    return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(recording_.robots())};
+}
+
+/// "of=CAMERA,FRAME".
+std::optional<Content> Answers::picture(std::string_view query) const {
+    const auto both = parameter(query, "of");
+    const std::size_t comma = both ? both->find(',') : std::string_view::npos;
+    if (comma == std::string_view::npos) return std::nullopt;
+    const auto camera = number_of(both->substr(0, comma)), frame = number_of(both->substr(comma + 1));
+    if (!camera || !frame) return std::nullopt;
+    auto bytes = camera_picture(recording_.folder(), robot_names(), *camera, *frame);
+    if (!bytes) return std::nullopt;
+    return Content{kBinary, std::move(*bytes)};
+}
+
+/// "from=OFFSET,LINK".
+std::optional<Content> Answers::serial(std::string_view query) const {
+    const auto both = parameter(query, "from");
+    const std::size_t comma = both ? both->find(',') : std::string_view::npos;
+    if (comma == std::string_view::npos) return std::nullopt;
+    const auto from = number_of(both->substr(0, comma));
+    const auto link = unescaped(both->substr(comma + 1));
+    if (!from || !link || link->empty() || link->size() > kLongestSearch) return std::nullopt;
+    return Content{kJson, serial_bytes(recording_.folder() / "trace.csv", *link, *from)};
+}
+
 std::optional<Content> Answers::get(std::string_view target) const {
     const std::size_t mark = target.find('?');
     const std::string_view name = target.substr(0, mark);
@@ -100,11 +130,14 @@ std::optional<Content> Answers::get(std::string_view target) const {
         if (name == "status") return Content{kJson, events.status()};
         if (name == "poses") return Content{kBinary, recording_.poses()};
         if (name == "beams") return Content{kBinary, events.beams()};
+        if (name == "cameras") return Content{kJson, camera_list(recording_.folder(), robot_names())};
         if (name == "drive" && driver_ != nullptr) return Content{kJson, driver_->state()};
         if (name == "possible" && driver_ != nullptr) return Content{kJson, driver_->possible()};
         return std::nullopt;
     }
     if (name == "texts") return texts(events, query);
+    if (name == "serial") return serial(query);
+    if (name == "picture") return picture(query);
     if (name == "find") return find(events, query);
     const bool sensors = name == "sensors";
     const auto value = parameter(query, sensors ? "robot" : "from");

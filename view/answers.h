@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace puckloop::view {
 
@@ -43,6 +44,9 @@ class Answers {
   private:
     static std::optional<Content> texts(const EventReader& events, std::string_view query);
     static std::optional<Content> find(const EventReader& events, std::string_view query);
+    std::optional<Content> serial(std::string_view query) const;
+    std::optional<Content> picture(std::string_view query) const;
+    std::vector<std::string> robot_names() const;
 
     const Recording& recording_;
     std::function<std::shared_ptr<const EventReader>()> latest_;

@@ -2,9 +2,11 @@
 
 #include "base/error.h"
 #include "view/bytes.h"
+#include "view/camera_pictures.h"
 #include "view/page_parts.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <zlib.h>
 
 #include <span>
@@ -100,6 +102,27 @@ std::string exported_page(const Recording& recording, EventReader& events, std::
     add("poses", recording.poses());
     add("status", events.status());
     add("beams", events.beams());
+    std::vector<std::string> robots(recording.stations().begin(),
+                                    recording.stations().begin() +
+                                        static_cast<std::ptrdiff_t>(recording.robots()));
+    const std::string list = camera_list(recording.folder(), robots);
+    nlohmann::json cameras = nlohmann::json::parse(list);
+    std::size_t pictures = 0;  // bytes
+    for (nlohmann::json& camera : cameras) {
+        nlohmann::json times = nlohmann::json::array(), frames = nlohmann::json::array();
+        const auto number = camera.at("camera").get<std::size_t>();
+        for (std::size_t i = 0; i < camera.at("frame").size(); ++i) {
+            const auto frame = camera.at("frame")[i].get<std::size_t>();
+            const auto picture = camera_picture(recording.folder(), robots, number, frame);
+            if (!picture || (pictures += picture->size()) > kMostExportedPictures) continue;
+            add(fmt::format("picture-{}-{}", number, frame), *picture);
+            times.push_back(camera.at("t")[i]);
+            frames.push_back(frame);
+        }
+        camera["t"] = std::move(times);
+        camera["frame"] = std::move(frames);
+    }
+    add("cameras", cameras.dump());
     add("leds", events.leds(0, EventReader::kMostLeds));
     add("events", table.block(0, count));
     add("texts", all_texts(table, count));

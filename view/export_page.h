@@ -10,6 +10,9 @@
 
 namespace puckloop::view {
 
+/// Bytes of cameras' pictures in an exported page; those behind are left out.
+inline constexpr std::size_t kMostExportedPictures = 64U << 20;
+
 /// Waits for `events`. Data are compressed (gzip) and in base 64. Throws RunError where the file would be
 /// larger than `most` bytes, and what EventReader::wait() throws.
 std::string exported_page(const Recording& recording, EventReader& events, std::size_t most = 256U << 20);

@@ -29,6 +29,28 @@ constexpr const char* kFolder = "the results folder of a run (`puckloop run SCEN
 constexpr int kReportFormat = 1;         // run/report/report.h
 constexpr std::size_t kMostNoted = 100;  // warnings of a report that the page lists
 
+/// Links that carried bytes: `name`, `ends`.
+ordered_json serial_lines(const ordered_json& report) {
+    ordered_json lines = ordered_json::array();
+    const auto links = report.find("links");
+    if (links == report.end() || !links->is_object()) return lines;
+    for (const auto& [name, link] : links->items()) {
+        const auto carried = [&link = link](const char* side) {
+            const auto found = link.find(side);
+            return found != link.end() && found->is_object() && found->contains("uart_frames");
+        };
+        if (!link.is_object() || (!carried("from_a") && !carried("from_b"))) continue;
+        const auto node = [&link = link](const char* end) {
+            const auto found = link.find(end);
+            const std::string place =
+                found != link.end() && found->is_string() ? found->get<std::string>() : "";
+            return place.substr(0, place.rfind('.'));
+        };
+        lines.push_back({{"name", name}, {"ends", {node("a"), node("b")}}});
+    }
+    return lines;
+}
+
 bool is_there(const fs::path& file) {
     std::error_code ignored;
     return fs::is_regular_file(file, ignored);
@@ -89,6 +111,7 @@ void Recording::read_report() {
             if (warnings.size() < kMostNoted && one.is_object())
                 warnings.push_back(fmt::format("{}: {}", string_of(one, "node"), string_of(one, "text")));
     shown["warnings"] = warnings;
+    shown["serial"] = serial_lines(json);
     report_ = shown.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 

@@ -19,8 +19,8 @@ std::unique_ptr<LinkFault> make_fault(const FaultSpec& spec, const WireSite& sit
     FaultPlan plan{spec, *kind, site, fault_stream(spec, seed, index, static_cast<int>(site.direction))};
     complete(plan.spec, *kind);
     check_fault(plan.spec, *kind);
-    for (auto make : {make_radio_fault, make_byte_fault, make_record_fault, make_level_fault,
-                      make_invert_fault, make_timing_fault, make_wiring_fault})
+    for (auto make : {make_radio_fault, make_typed_fault, make_byte_fault, make_record_fault,
+                      make_level_fault, make_invert_fault, make_timing_fault, make_wiring_fault})
         if (auto fault = make(plan)) return fault;
     throw InputError("", place, fmt::format("nobody carries out {}", spec.kind));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::cosim {
 
@@ -60,12 +61,12 @@ void FrameFault::apply(std::vector<Delivery>& batch, const Sending& sending) {
     after(batch);
 }
 
-Delivery FrameFault::own(const UartFrame& frame, FaultKind mark) {
+Delivery FrameFault::own(const UartFrame& frame, FaultKind mark, std::string what) {
     const int before_stop = bits_of(frame) - frame.stop_bits;
     const Time flight = std::max(plan_.site.flight, frame.bit_period * before_stop);
     const Time delivery = later(later(frame.start, flight), plan_.site.latency);
-    evidence_.foresee({frame.start, 0, plan_.site.sender, std::string(fault_name(plan_.kind.mark))},
-                      delivery);
+    if (what.empty()) what = fault_name(plan_.kind.mark);
+    evidence_.foresee({frame.start, 0, plan_.site.sender, std::move(what)}, delivery);
     return {Message{delivery, 0, frame}, mark};
 }
 

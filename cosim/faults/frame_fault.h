@@ -49,8 +49,8 @@ class FrameFault : public LinkFault {
     virtual void after(std::vector<Delivery>&) {}
 
     /// Something that the fault itself will put on the line; fired, if it arrives before the end of the run.
-    /// Of preset() only.
-    Delivery own(const UartFrame& frame, FaultKind mark);
+    /// Of preset() only. `what`: for the evidence; empty: the kind's name.
+    Delivery own(const UartFrame& frame, FaultKind mark, std::string what = {});
 
     const FaultSpec& spec() const { return plan_.spec; }
     const WireSite& site() const { return plan_.site; }
@@ -78,6 +78,7 @@ class QueuedFault : public FrameFault {
 };
 
 // The families of kinds; nullptr for a kind that is not theirs.
+std::unique_ptr<LinkFault> make_typed_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_byte_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_record_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_level_fault(const FaultPlan& plan);

@@ -177,7 +177,25 @@ ordered_json BoardAccess::read_register(std::string name) const {
             {"address", special->address}};
 }
 
+ordered_json BoardAccess::read_field(const std::string& name, const std::string& field) const {
+    ordered_json reply = read_register(name);
+    const ordered_json fields = reply.at("fields");
+    if (!fields.contains(field)) {
+        std::vector<std::string> known;
+        for (const auto& one : fields.items())
+            known.push_back(one.key());
+        throw InputError("", std::string(node_.name()), fmt::format("{} has no field '{}'", name, field),
+                         known.empty() ? "the whole register"
+                                       : fmt::format("one of {}", fmt::join(known, ", ")));
+    }
+    reply["field"] = field;
+    reply["value"] = fields.at(field);
+    return reply;
+}
+
 ordered_json BoardAccess::read(const json& request) const {
+    if (request.contains("field"))
+        return read_field(request.at("register").get<std::string>(), request.at("field").get<std::string>());
     if (request.contains("register")) return read_register(request.at("register").get<std::string>());
     const Place place = place_of(request);
     std::vector<std::uint8_t> bytes(place.bytes);
@@ -226,6 +244,8 @@ void BoardAccess::write_register(std::string name, std::uint64_t value) {
 }
 
 void BoardAccess::write(const json& request) {
+    if (request.contains("field"))
+        throw InputError("", std::string(node_.name()), "a field alone cannot be written", "its register");
     if (request.contains("register"))
         return write_register(request.at("register").get<std::string>(),
                               request.at("value").get<std::uint64_t>());

@@ -19,8 +19,8 @@ class BoardAccess {
     /// `firmware`: its image, of an AVR or of a dsPIC. Throws InputError: it cannot be read.
     BoardAccess(DrivenNode& node, const std::string& firmware, bool avr);
 
-    /// `request` has "register", "variable" or "memory" (and "bytes"). Throws InputError for what there is
-    /// not.
+    /// `request` has "register" (and "field"), "variable" or "memory" (and "bytes"). Throws InputError for
+    /// what there is not.
     nlohmann::ordered_json read(const nlohmann::json& request) const;
     /// The same with "value", or "data" in hexadecimal.
     void write(const nlohmann::json& request);
@@ -37,6 +37,7 @@ class BoardAccess {
     Place variable(const std::string& name) const;
     Place place_of(const nlohmann::json& request) const;
     nlohmann::ordered_json read_register(std::string name) const;
+    nlohmann::ordered_json read_field(const std::string& name, const std::string& field) const;
     void write_register(std::string name, std::uint64_t value);
     void write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
 

@@ -3,13 +3,17 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "base/version/version.h"
+#include "cosim/faults/typed_bytes.h"
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
 #include "run/control/control_place.h"
 #include "run/driven/possible_faults.h"
+#include "run/driven/words.h"
 #include "run/factory/node_factory.h"
 #include "run/snapshots/origin.h"
 #include "scenarios/reader/events/event_tables.h"
+#include "scenarios/reader/faults/event_file.h"
+#include "scenarios/reader/faults/fault_words.h"
 #include "scenarios/values/quantity.h"
 
 #include <fmt/format.h>
@@ -17,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <utility>
 
@@ -31,6 +36,8 @@ using nlohmann::ordered_json;
 
 constexpr double kLongest = 720 * 3600.0;  // s
 constexpr Time kFinest = cosim::kMicrosecond;
+constexpr std::size_t kMostTypedAtOnce = 4096;
+constexpr double kSlowestBaud = 50, kFastestBaud = 4e6;
 
 /// "20 ms", or a number of seconds.
 Time time_of(const json& request, const char* key) {
@@ -48,6 +55,20 @@ Time time_of(const json& request, const char* key) {
     if (!(seconds >= 0 && seconds <= kLongest))
         throw InputError("", key, fmt::format("{} is no time of a run", value.dump()), "such as \"20 ms\"");
     return cosim::from_seconds(seconds);
+}
+
+/// What `read` and `write` are about: keys, or `what` as people type it.
+json with_place(const json& request) {
+    if (!request.contains("what")) return request;
+    json place = request;
+    place.update(place_of_words(request.at("what").get<std::string>()));
+    return place;
+}
+
+/// `frame` of a filter: keys, or a text.
+json frame_of(const json& request) {
+    const json frame = request.value("frame", json::object());
+    return frame.is_string() ? frame_of_words(frame.get<std::string>()) : frame;
 }
 
 constexpr Time kWorldStep = cosim::kMillisecond;
@@ -246,16 +267,18 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
         return nullptr;
     }
     if (op == "read") {
-        answered.update(board(request).read(request));
+        answered.update(board(request).read(with_place(request)));
+        answered["text"] = value_text(answered);
     } else if (op == "where") {
         answered.update(board(request).where());
     } else if (op == "faults") {
         answered.update(possible_faults(setup_.scenario));
     } else if (op == "write") {
-        board(request).write(request);
-        deeds_.push_back({now_, request});
+        const json change = with_place(request);
+        board(change).write(change);
+        deeds_.push_back({now_, change});
     } else if (op == "capture") {
-        frames_.capture(FrameFilter(request.value("frame", json::object()), setup_.links));
+        frames_.capture(FrameFilter(frame_of(request), setup_.links));
     } else if (op == "frames") {
         std::size_t lost = 0;
         answered["frames"] = frames_.take(lost);
@@ -270,10 +293,12 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
         go_back(request);
     } else if (op == "fault") {
         add_fault(request, take);
+    } else if (op == "type") {
+        type(request, take);
     } else if (op != "info") {
-        constexpr std::array<std::string_view, 13> kOps{"info",    "step",   "read", "where", "write",
+        constexpr std::array<std::string_view, 14> kOps{"info",    "step",   "read", "where", "write",
                                                         "capture", "frames", "act",  "save",  "faults",
-                                                        "back",    "fault",  "end"};
+                                                        "back",    "fault",  "type", "end"};
         throw InputError(
             "", "op", fmt::format("there is no '{}'", op),
             fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
@@ -293,13 +318,16 @@ void DrivenRun::begin_step(const json& request) {
                          fmt::format("{:.9f} s is not after now, {:.9f} s", cosim::to_seconds(step.until),
                                      cosim::to_seconds(now_)),
                          "a later time");
+    if (step.condition.is_string()) {
+        const std::string only = boards_.size() == 1 ? boards_.begin()->first : std::string();
+        step.condition = condition_of_words(step.condition.get<std::string>(), request.value("node", only));
+    }
     if (!step.condition.is_null()) {
         step.every = request.contains("every") ? time_of(request, "every") : cosim::kMillisecond;
         if (step.every < kFinest) throw InputError("", "every", "is too short", "1 us or more");
         const json& condition = step.condition;
         if (condition.contains("frame") || condition.contains("text"))
-            frames_.wait_for(FrameFilter(condition.value("frame", json::object()), setup_.links),
-                             condition.value("text", ""));
+            frames_.wait_for(FrameFilter(frame_of(condition), setup_.links), condition.value("text", ""));
         else
             compare(condition);  // what cannot be looked at is refused now
     }
@@ -340,7 +368,13 @@ void DrivenRun::go_back(const json& request) {
             fmt::format("{:.9f} s is not between the run's beginning, {:.9f} s, and now, {:.9f} s",
                         cosim::to_seconds(to), cosim::to_seconds(setup_.from_time), cosim::to_seconds(now_)),
             "an earlier time");
-    RunSetup next = planned(request_);
+    RunRequest with = request_;
+    for (const Typed& typed : typed_)
+        if (typed.time >= to) std::erase(with.faults, typed.fault);
+    RunSetup next = planned(with);
+    origin_ = origin_of(next, with);
+    request_ = std::move(with);
+    std::erase_if(typed_, [to](const Typed& typed) { return typed.time >= to; });
     std::erase_if(deeds_, [to](const Deed& deed) { return deed.time >= to; });
     add_events(next, to);
     setup_ = std::move(next);
@@ -355,17 +389,80 @@ void DrivenRun::add_fault(const json& request, const TakeSnapshot& take) {
     const json& faults = request.at("fault");
     for (const json& fault : faults.is_array() ? faults : json::array({faults}))
         with.faults.push_back(fault.get<std::string>());
+    go_on_with(std::move(with), request.value("id", json()), take);
+}
+
+void DrivenRun::type(const json& request, const TakeSnapshot& take) {
+    constexpr int kBitsOfFrame = 10;
+    if (!no_way_back_.empty()) throw InputError("", "type", no_way_back_, "a run that can go back");
+    refuse_waiting_change("type");
+    const bool as_text = request.contains("text");
+    if (as_text == request.contains("data"))
+        throw InputError("", "type", "needs one of 'text' and 'data'", R"("text": "d,100,100\r")");
+    const std::string given = request.at(as_text ? "text" : "data").get<std::string>();
+    std::vector<std::uint8_t> bytes =
+        as_text ? std::vector<std::uint8_t>(given.begin(), given.end()) : cosim::typed_bytes(given);
+    if (bytes.empty())
+        throw InputError("", as_text ? "text" : "data", "are no bytes",
+                         as_text ? "a text" : "pairs of hexadecimal digits");
+    if (bytes.size() > kMostTypedAtOnce)
+        throw InputError("", "type", fmt::format("{} bytes are too many", bytes.size()), "at most 4096");
+    Typed typed{now_, now_, request.at("link").get<std::string>(), request.at("from").get<std::string>()};
+    const auto link = std::find_if(setup_.links.begin(), setup_.links.end(), [&](const auto& one) {
+        return one.name == typed.link && one.nominal_baud > 0.0;
+    });
+    if (link == setup_.links.end()) {
+        std::vector<std::string_view> known;
+        for (const cosim::LinkSpec& one : setup_.links)
+            if (one.nominal_baud > 0.0) known.push_back(one.name);
+        throw InputError("", "link", fmt::format("there is no serial line '{}'", typed.link),
+                         fmt::format("one of {}{}", fmt::join(known, ", "), did_you_mean(typed.link, known)));
+    }
+    const double baud = request.value("baud", link->nominal_baud);
+    if (!(baud >= kSlowestBaud && baud <= kFastestBaud))
+        throw InputError("", "baud", fmt::format("{:g} is no rate of a serial line", baud), "50 to 4000000");
+    for (const Typed& before : typed_)  // behind what was typed there and is still on its way
+        if (before.link == typed.link && before.from == typed.from)
+            typed.end = std::max(typed.end, before.end);
+    typed.fault =
+        fmt::format(R"({} link={} from={} begin="{}.{:012} s" data={:02x} baud={} may_not_fire=true)",
+                    cosim::kTypedKind, typed.link, typed.from, typed.end / cosim::kSecond,
+                    typed.end % cosim::kSecond, fmt::join(bytes, ""), baud);
+    typed.end =
+        cosim::later(typed.end, cosim::from_seconds(kBitsOfFrame * static_cast<double>(bytes.size()) / baud));
+    RunRequest with = request_;
+    with.faults.push_back(typed.fault);
+    go_on_with(std::move(with), request.value("id", json()), take, [&] { typed_.push_back(typed); });
+}
+
+void DrivenRun::go_on_with(RunRequest with, const json& id, const TakeSnapshot& take,
+                           const std::function<void()>& accepted) {
     RunSetup next = planned(with);
     check_origin(origin_, next, now_, "");
     // Of one snapshot both: it is checked first, and kept then.
     cosim::RunSnapshot here = take();
     cosim::check_link_faults(here, next.links, next.scenario.faults, next.scenario.seed);
     remember([&] { return std::move(here); });
+    if (accepted) accepted();
+    origin_ = origin_of(next, with);
     add_events(next, now_);
     setup_ = std::move(next);
     request_ = std::move(with);
-    return_ = Return{history_.at_or_before(now_), now_, request.value("id", json())};
+    return_ = Return{history_.at_or_before(now_), now_, id};
     throw cosim::Reverted{};
+}
+
+void DrivenRun::record_faults() const {
+    std::string text;
+    if (!request_.events.empty())
+        for (const TomlValue& table : scenarios::fault_tables_of(request_.events))
+            text += scenarios::fault_toml(table);
+    for (const std::string& words : request_.faults)
+        text += scenarios::fault_toml(scenarios::fault_table_of(words));
+    if (text.empty()) return;
+    std::ofstream file(setup_.out / "events.toml", std::ios::app);
+    file << text << std::flush;
+    if (!file) throw RunError(fmt::format("{}: cannot be written", (setup_.out / "events.toml").string()));
 }
 
 RunSetup DrivenRun::planned(const RunRequest& request) const {
@@ -427,6 +524,8 @@ BoardAccess& DrivenRun::board(const json& request) {
     std::vector<std::string_view> known;
     for (const auto& one : boards_)
         known.push_back(one.first);
+    if (name.empty())
+        throw InputError("", "node", "no board is named", fmt::format("one of {}", fmt::join(known, ", ")));
     throw InputError("", "node", fmt::format("the run has no board '{}'", name),
                      fmt::format("one of {}{}", fmt::join(known, ", "), did_you_mean(name, known)));
 }
@@ -445,6 +544,7 @@ ordered_json DrivenRun::greeting() const {
     for (const cosim::LinkSpec& link : setup_.links)
         links.push_back({{"name", link.name}, {"a", link.a.node}, {"b", link.b.node}});
     return {{"protocol", kProtocol},
+            {"revision", kRevision},
             {"version", version.number},
             {"commit", version.commit},
             {"time_s", cosim::to_seconds(now_)},
@@ -455,7 +555,12 @@ ordered_json DrivenRun::greeting() const {
             {"links", links}};
 }
 
-void DrivenRun::over(const cosim::Outcome& outcome) {
+void DrivenRun::over(cosim::Outcome& outcome) {
+    try {
+        record_faults();
+    } catch (const std::runtime_error& error) {
+        outcome.warnings.emplace_back(error.what());
+    }
     if (!step_) return;
     now_ = outcome.simulated;
     ordered_json done = reply(step_->id);

@@ -8,7 +8,8 @@
 // It can go back, and take a fault that begins later: it is then given up (cosim::Reverted) and begun again
 // from a snapshot, on the same line to the client. What the client did until then is done again: what it
 // wrote to boards while the run stands still, commands to the world as events of it, for the world is
-// executed from its beginning.
+// executed from its beginning. What it types into serial lines is a fault of its own kind, `type`, that going
+// back takes away.
 
 #include "cosim/conductor.h"
 #include "cosim/resume/run_snapshot.h"
@@ -42,6 +43,8 @@ void let_client_drive(RunSetup& setup, const RunRequest& request);
 class DrivenRun {
   public:
     static constexpr int kProtocol = 1;
+    /// Rises when requests are added; those that were there stay as they are.
+    static constexpr int kRevision = 2;
 
     /// Plans the run of a request (run/setup.h).
     using Planner = std::function<RunSetup(const RunRequest&)>;
@@ -62,7 +65,7 @@ class DrivenRun {
     const RunSetup& setup() const { return setup_; }
     cosim::TraceSink& sink() { return frames_; }
     /// The run is over: the client, if it waits, hears how.
-    void over(const cosim::Outcome& outcome);
+    void over(cosim::Outcome& outcome);
 
   private:
     /// What a step waits for.
@@ -86,6 +89,13 @@ class DrivenRun {
         cosim::Time to = 0;
         nlohmann::json id;  ///< of the request
     };
+    /// What the client typed into a serial line.
+    struct Typed {
+        cosim::Time time = 0;  ///< the run stood still there
+        cosim::Time end = 0;   ///< of its last byte
+        std::string link{}, from{};
+        std::string fault{};  ///< among those of the request
+    };
     using TakeSnapshot = std::function<cosim::RunSnapshot()>;
 
     void stand(const TakeSnapshot& take);
@@ -107,6 +117,12 @@ class DrivenRun {
     /// Both return only by exceptions: Reverted, or InputError for what cannot be.
     [[noreturn]] void go_back(const nlohmann::json& request);
     [[noreturn]] void add_fault(const nlohmann::json& request, const TakeSnapshot& take);
+    [[noreturn]] void type(const nlohmann::json& request, const TakeSnapshot& take);
+    /// Begins the run again here, with the faults of `with`. `accepted`: called once they are.
+    [[noreturn]] void go_on_with(RunRequest with, const nlohmann::json& id, const TakeSnapshot& take,
+                                 const std::function<void()>& accepted = {});
+    /// All faults that are not the scenario's, into events.toml.
+    void record_faults() const;
     /// The plan of `request`, with the client, and what it did to the world before `time`.
     RunSetup planned(const RunRequest& request) const;
     void add_events(RunSetup& setup, cosim::Time time) const;
@@ -134,6 +150,7 @@ class DrivenRun {
     RunHistory history_;
     cosim::Time remember_at_ = cosim::kNever;  ///< the next snapshot into it
     std::vector<Deed> deeds_;                  ///< in their order
+    std::vector<Typed> typed_;                 ///< in their order
     std::size_t answered_ = 0;  ///< of deeds_, the first of which the world has not said anything
     std::optional<Return> return_;
     std::optional<RunHistory::Place> kept_;

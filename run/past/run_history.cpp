@@ -1,6 +1,7 @@
 #include "run/past/run_history.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace puckloop::tools {
@@ -32,7 +33,7 @@ void RunHistory::take(RunSnapshot& snapshot, Place place) {
     carried_ = std::exchange(snapshot.wires, {});
     Instant instant{std::move(place), nullptr, {}};
     for (const WireState& wire : carried_) {
-        instant.wires.push_back({wire.sent.length(), wire.arrived.size()});
+        instant.sent.push_back(wire.sent.length());
         snapshot.wires.push_back({wire.sequence, wire.brought_back, wire.faulty, {}, {}});
     }
     instant.snapshot = std::make_shared<const RunSnapshot>(std::move(snapshot));
@@ -76,10 +77,13 @@ std::shared_ptr<const RunSnapshot> RunHistory::snapshot(std::size_t instant) con
     if (instant == 0) return one.snapshot;
     auto whole = std::make_shared<RunSnapshot>(*one.snapshot);
     for (std::size_t w = 0; w < whole->wires.size(); ++w) {
-        const Instant::Wire& length = one.wires[w];
-        whole->wires[w].sent = carried_[w].sent.beginning(length.sent);
-        const auto first = carried_[w].arrived.begin();
-        whole->wires[w].arrived.assign(first, first + static_cast<std::ptrdiff_t>(length.arrived));
+        WireState& wire = whole->wires[w];
+        wire.sent = carried_[w].sent.beginning(one.sent[w]);
+        // By time, not by number: what a fault that came later puts on the line stands first in the record.
+        const Time time = whole->time;
+        const auto& all = carried_[w].arrived;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(wire.arrived),
+                     [time](const cosim::TraceRecord& record) { return record.time < time; });
     }
     return whole;
 }

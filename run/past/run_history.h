@@ -67,11 +67,7 @@ class RunHistory {
     struct Instant {
         Place place;
         std::shared_ptr<const cosim::RunSnapshot> snapshot;  ///< its wires without what they carried
-        struct Wire {
-            cosim::SentRecord::Length sent;
-            std::size_t arrived = 0;
-        };
-        std::vector<Wire> wires;
+        std::vector<cosim::SentRecord::Length> sent;         ///< by each wire
     };
     void thin_out();
 

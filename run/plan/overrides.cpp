@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "run/files/program_path.h"
-#include "scenarios/reader/events/event_tables.h"
+#include "scenarios/reader/faults/event_file.h"
 #include "scenarios/reader/faults/fault_tables.h"
 
 #include <fmt/format.h>
@@ -104,12 +104,12 @@ void apply(const RunRequest& request, Scenario& scenario) {
     if (request.duration) scenario.duration = request.duration;
     if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
     if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
-    for (const std::string& words : request.faults)
-        scenarios::add_fault(words, scenario);
     if (!request.events.empty()) {
-        scenario.events.events = scenarios::read_event_file(request.events);
+        scenarios::apply_event_file(request.events, scenario);
         physics::check_events(scenario.events, scenario.world);
     }
+    for (const std::string& words : request.faults)
+        scenarios::add_fault(words, scenario);
 }
 
 }  // namespace puckloop::tools

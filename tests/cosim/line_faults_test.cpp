@@ -7,7 +7,9 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 
 using namespace puckloop;
@@ -152,6 +154,42 @@ TEST_CASE("unplug: of a frame on the way a part arrives, of those within the win
         CHECK(line.evidence().fired() >= 3);
         CHECK_FALSE(line.early);
     }
+}
+
+TEST_CASE("type: bytes without a pause at the line's rate or its own, and nothing else suffers") {
+    for (const double baud : {0.0, 9600.0}) {
+        FaultSpec spec = fault("type").set("data", "64 2c0D");
+        if (baud > 0) spec.set("baud", baud);
+        spec.begin = kMillisecond;
+        FaultLine line(spec);
+        const Time bit = baud > 0 ? std::llround(1e12 / baud) : kBit;
+        for (int i = 0; i < 5; ++i)
+            line.send(10 * kMillisecond + i * kByte, 0x10u + static_cast<unsigned>(i));
+        const std::vector<UartFrame> frames = line.arrived();
+        REQUIRE(frames.size() == 8);
+        for (std::size_t i = 0; i < 3; ++i) {
+            CHECK(frames[i].data == std::array{0x64, 0x2c, 0x0d}[i]);
+            CHECK(frames[i].start == kMillisecond + static_cast<Time>(i) * 10 * bit);
+            CHECK(frames[i].bit_period == bit);
+            CHECK(line.all[i].fault == FaultKind::Insert);
+            CHECK(line.all[i].message.time >= frames[i].start + 9 * bit);
+        }
+        for (std::size_t i = 3; i < 8; ++i)
+            CHECK(frames[i].data == 0x10u + i - 3);
+        CHECK(line.evidence().fired() == 3);
+        CHECK(line.in_turn());
+        CHECK_FALSE(line.early);
+    }
+}
+
+TEST_CASE("type: again after a period, behind what is still on the line") {
+    FaultSpec spec = fault("type").set("data", "41 42 43");
+    spec.begin = kMillisecond;
+    spec.period = 2 * kByte;
+    spec.count = 2;
+    FaultLine line(spec);
+    CHECK(line.bytes() == std::vector<unsigned>{0x41, 0x42, 0x43, 0x41, 0x42, 0x43});
+    CHECK(line.in_turn());
 }
 
 TEST_CASE("a pulse shorter than half a bit is no start bit") {

@@ -83,6 +83,28 @@ class Client(InFolder):
             self.assertTrue(step.met)
             self.assertLess(step.time_s, 1)
 
+    def test_conditions_and_places_are_texts(self):
+        with self.begun() as run:
+            board = run.board("robot0.pic")
+            step = run.step(to="1 s", until="W15 > 0x800")  # the only board
+            self.assertTrue(step.met)
+            self.assertTrue(run.step(for_="1 s", until="frame link=robot0.uart from=robot0.pic").met)
+            self.assertTrue(run.step(for_="1 s", until="robot0.pic U2STA.TRMT == 1").met)
+            self.assertEqual(board.value("U2STA.TRMT"), 1)
+            self.assertEqual(board.value("U2STA"), board.register("U2STA").value)
+            self.assertEqual(board.value("0x850:4"), int.from_bytes(board.memory(0x850, 4).data, "little"))
+            self.assertEqual(board.value("0x850:12"), int.from_bytes(board.memory(0x850, 12).data, "little"))
+            for text, wrong in (("TMR1 ~ 3", "is no condition"), ("", "is no condition"), ("frame x", "KEY=VALUE"),
+                                ("U2STA.NONE == 1", "has no field 'NONE'"), ("x" * 501, "501 characters"),
+                                ("robot1.pic TMR1 == 1", "no board"), ("frame lnik=a", "did you mean"),
+                                ("TMR1 == 99999999999999999999", "is no number")):
+                with self.assertRaisesRegex(puckloop.RequestError, wrong):
+                    run.step(for_="1 s", until=text)
+            for text, wrong in (("", "is no register"), ("TMR1 TMR2", "is no register"), ("U2STA.NONE", "no field"),
+                                ("99999999999999999999", "is no number"), ("0x850:99999999", "bytes")):
+                with self.assertRaisesRegex(puckloop.RequestError, wrong):
+                    board.value(text)
+
     def test_the_same_requests_give_the_same_trace_in_both_placements(self):
         hashes = []
         for in_process in (True, False):
@@ -192,6 +214,59 @@ class Client(InFolder):
                 self.assertGreater(report["faults"][0]["fired"], 0)
                 traces.append(report["trace_sha256"])
         self.assertEqual(traces[0], traces[1])
+
+    def test_what_is_typed_is_a_fault_of_the_beginning_and_can_be_done_again(self):
+        # At 400 ms two lines one behind the other, and one as the other end a little later.
+        words = ['type link=robot0.uart from=robot0.pic begin="0.4 s" data=763d0d baud=115200',
+                 'type link=robot0.uart from=robot0.pic begin="0.400260416667 s" data=ff00 baud=115200',
+                 'type link=robot0.uart from=robot0.linux begin="0.45 s" data=0041 baud=115200']
+        traces = []
+        for by_hand in (False, True):
+            out = self.folder / f"{by_hand}"
+            with puckloop.start(scenario("1 s"), out=out, faults=() if by_hand else words) as run:
+                if by_hand:
+                    run.step(to="380 ms")
+                    run.act("move carton to 20 cm, 5 cm")
+                    run.type("robot0.uart", "robot0.pic", "gone")  # taken back
+                    run.step(to="390 ms")
+                    run.back("350 ms")
+                    run.step(to="400 ms")
+                    run.capture(link="robot0.uart")
+                    run.type("robot0.uart", "robot0.pic", "v=\r")
+                    run.type("robot0.uart", "robot0.pic", b"\xff\x00")
+                    run.step(to="450 ms")
+                    run.type("robot0.uart", "robot0.linux", b"\x00A")
+                    run.step(to="700 ms")
+                    run.back("420 ms")  # where the first two were typed already, and the last one was not
+                    run.step(to="450 ms")
+                    run.type("robot0.uart", "robot0.linux", b"\x00A")
+                    run.step(to="500 ms")
+                    typed = [(frame.sender, frame.byte) for frame in run.frames() if frame.fault == "insert"]
+                    self.assertEqual(typed, [("robot0.pic", ord("v")), ("robot0.pic", ord("=")), ("robot0.pic", 13),
+                                             ("robot0.pic", 0xff), ("robot0.pic", 0), ("robot0.linux", 0),
+                                             ("robot0.linux", ord("A"))])
+                    for link, sender, text, wrong in (
+                            ("robot0.uatr", "robot0.pic", "x", 'did you mean "robot0.uart"'),
+                            ("robot0.world", "robot0.pic", "x", "no serial line"),
+                            ("robot0.uart", "robot1.pic", "x", "at no end of robot0.uart"),
+                            ("robot0.uart", "robot0.pic", "", "are no bytes"),
+                            ("robot0.uart", "robot0.pic", "x" * 4097, "too many")):
+                        with self.assertRaisesRegex(puckloop.RequestError, wrong):
+                            run.type(link, sender, text)
+                    with self.assertRaisesRegex(puckloop.RequestError, "no rate of a serial line"):
+                        run.type("robot0.uart", "robot0.pic", "x", baud=0)
+                run.step(to="900 ms")
+                report = run.end().report
+                self.assertEqual([fault["fired"] for fault in report["faults"]], [3, 2, 2])
+                traces.append(report["trace_sha256"])
+        self.assertEqual(traces[0], traces[1])
+        # The file of what was done has it all.
+        done = self.folder / "done.toml"
+        done.write_text((self.folder / "True/events.toml").read_text())
+        self.assertEqual(done.read_text().count("[[fault]]"), 3)
+        with puckloop.start(scenario("1 s"), out=self.folder / "again", options=["--events", str(done)]) as run:
+            run.step(to="900 ms")
+            self.assertEqual(run.end().report["trace_sha256"], traces[0])
 
     def test_text_is_expected_in_simulated_time(self):
         with self.begun() as run:

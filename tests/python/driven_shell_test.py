@@ -33,6 +33,7 @@ frames link=robot0.uart from=robot0.pic
 until TMR1 >= 0x10
 until frame link=robot0.uart from=robot0.pic
 act move can to 10 cm, 5 cm
+type robot0.uart robot0.pic "v\\r"
 step 20 ms
 frames
 back 0.4
@@ -49,6 +50,7 @@ end
         self.assertRegex(said, r"(?m)^U2STA.TRMT = [01]$")
         self.assertRegex(said, r"(?m)^0x850:4 = 0x[0-9a-f]{8} ")
         self.assertRegex(said, r"(?m)^=> 0x[0-9a-f]{4}  \S")
+        self.assertRegex(said, r"(?m)fault=insert from=robot0\.pic .*value=76$")
         self.assertGreater(len(re.findall(r"(?m)^[01]\.\d+ .*from=robot0\.pic.* value=[0-9a-f]{2}$", said)), 1)
         self.assertIn("\n0.400000 s\n", said)
         self.assertIn("\n1.200000 s\n", said)
@@ -62,7 +64,8 @@ end
     def test_what_is_refused_is_said_and_counted(self):
         lines = ["nonsense", "until TMR1 ~ 3", "until frame x", "read", "read TMR9", "read -", "write TRISA zz",
                  "write TRISA", "write U2STA.TRMT 1", "board nobody", "back 1", "fault dropp link=robot0.uart", "act fly",
-                 "frames", "step x", "save", "read U2STA.NONE"]
+                 "frames", "step x", "save", "read U2STA.NONE", "type", "type robot0.uart", "type robot0.uart robot0.pic",
+                 "type robot0.uart nobody x", 'type robot0.uart robot0.pic "\\q"']
         status, said, _ = self.shell("step\n" + "\n".join(lines) + "\nstep\n")
         self.assertEqual(status, 1)
         answers = said.split("(puckloop) ")[2:-1]

@@ -141,15 +141,16 @@ class Live(unittest.TestCase):
         self.assertIn({"name": "robot0.uart", "on": "uart", "key": "link", "ends": ["robot0.linux", "robot0.pic"]},
                       possible["places"])
         self.ask(address, {"page": "a", "do": "look", "board": "robot0.pic", "items": [
-            {"register": "TMR1"}, {"register": "NONE"}, {"memory": 0x850, "bytes": 4}]})
-        self.ask(address, {"page": "a", "do": "until", "condition": {
-            "node": "robot0.pic", "register": "T1CON", "is": ">=", "value": 0x8000}, "ms": 500})
+            "TMR1", "NONE", "0x850:4", "U2STA.TRMT", "nonsense <"]})
+        self.ask(address, {"page": "a", "do": "until", "condition": "T1CON >= 0x8000", "board": "robot0.pic",
+                           "ms": 500})
         state = self.wait(address, lambda s: s["acts"])
         self.assertIn("it holds", state["acts"][0]["answer"])
         state = self.wait(address, lambda s: s["look"] and s["look"]["time_s"] == s["time_s"])
         look = state["look"]
-        self.assertEqual([value["ok"] for value in look["values"]], [True, False, True])
+        self.assertEqual([value["ok"] for value in look["values"]], [True, False, True, True, False])
         self.assertEqual(len(look["values"][2]["data"]), 8)
+        self.assertIn(look["values"][3]["text"], ("0", "1"))
         self.assertTrue(look["where"]["instructions"])
         self.ask(address, {"page": "a", "do": "step", "ms": 800})
         self.ask(address, {"page": "a", "do": "act", "command": "move can to 10 cm, 5 cm"})
@@ -163,8 +164,14 @@ class Live(unittest.TestCase):
         self.assertEqual(len(refused), 1)
         self.assertIn("did you mean", refused[0]["answer"])
         for request in ({"do": "back"}, {"do": "back", "to_s": "x"}, {"do": "fault"}, {"do": "until"},
-                        {"do": "until", "condition": {}, "ms": 1e9}, {"do": "look", "items": 3},
-                        {"do": "look", "items": [1]}, {"do": "look", "items": [{}] * 41}):
+                        {"do": "until", "condition": {}}, {"do": "until", "condition": "TMR1 > 2", "ms": 1e9},
+                        {"do": "until", "condition": "x" * 1001}, {"do": "type"},
+                        {"do": "type", "link": "robot0.uart", "from": "robot0.pic"},
+                        {"do": "type", "link": "robot0.uart", "from": "robot0.pic", "text": "x" * 1001},
+                        {"do": "type", "link": "x" * 65, "from": "robot0.pic", "text": "x"},
+                        {"do": "look", "items": 3},
+                        {"do": "look", "items": [1]}, {"do": "look", "items": ["x"] * 41},
+                        {"do": "look", "items": ["x" * 65]}):
             self.assertEqual(self.ask(address, {"page": "a", **request})[0], 409, request)
         self.ask(address, {"page": "a", "do": "play", "speed": 0})
         self.wait(address, lambda s: s["over"])
@@ -207,20 +214,21 @@ class Live(unittest.TestCase):
         browser.open(address)
         browser.wait("document.body && document.body.dataset.ready")
         browser.value("""(() => { const app = window.puckloopView; app.board.chooser.value = 'robot0.pic'; app.board.look();
-            app.board.add('TMR1'); app.board.add('U2STA.TRMT'); app.board.add('?'); app.drive({ do: 'step', ms: 6000 }); })()""")
+            app.board.add('TMR1'); app.board.add('U2STA.TRMT'); app.board.add('no such'); app.drive({ do: 'step', ms: 6000 }); })()""")
         browser.wait("Number(document.body.dataset.simulated) === 6")
         browser.wait("document.querySelectorAll('#watches tr').length > 10")
         self.assertRegex(browser.value("document.querySelector('#watches tr').textContent"), "^TMR10x[0-9a-f]{4} ")
+        self.assertEqual(browser.value("document.querySelectorAll('#watches tr.failed').length"), 1)
         self.assertEqual(browser.value("document.querySelectorAll('#code .here').length"), 1)
         browser.wait("Number(document.body.dataset.events) > 20")
         browser.value("document.getElementById('back-5').click()")
         browser.wait("document.body.dataset.epoch === '1' && Number(document.body.dataset.simulated) === 1")
         browser.wait("window.puckloopView.run.duration <= 1.001")
-        for text, colour in (("TMR1 < 0x8000", False), ("nonsense <", True)):
+        for text, failed, said in (("nonsense <", True, "is no condition"), ("TMR1 < 0x8000", False, "it holds")):
             browser.value(f"""(() => {{ const field = document.getElementById('until'); field.value = {json.dumps(text)};
                 window.puckloopView.key({{ target: field, key: 'Enter' }}); }})()""")
-            self.assertEqual(browser.value("document.getElementById('until').classList.contains('failed')"), colour)
-        browser.wait("document.getElementById('detail').textContent.includes('it holds')")
+            browser.wait(f"document.getElementById('detail').textContent.includes('{said}')")
+            self.assertEqual(browser.value("document.getElementById('until').classList.contains('failed')"), failed)
         browser.value("document.getElementById('fault-open').click()")
         browser.value("""(() => { const input = document.querySelector('#fault-fields [data-key=from]');
             input.value = 'robot0.pic'; input.dispatchEvent(new Event('input')); })()""")
@@ -231,11 +239,23 @@ class Live(unittest.TestCase):
         browser.value("window.puckloopView.drive({ do: 'step', ms: 1000 })")
         browser.wait("window.puckloopView.run.events.flags && "
                      "[...window.puckloopView.run.events.flags.slice(0, window.puckloopView.run.events.count)].some((f) => f & 1)")
+        # A line typed into the robot's UART as its Linux board.
+        browser.value("""(() => { const { terminal } = window.puckloopView; terminal.chooser.value = 'robot0.uart';
+            terminal.choose(); terminal.end.value = 'robot0.linux'; terminal.ending.value = 'CR';
+            terminal.input.value = 'typed'; })()""")
+        browser.value("document.getElementById('terminal-input').focus()")
+        browser.key("Enter")
+        browser.wait("document.body.dataset.epoch === '3'")
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 10 })")
+        browser.wait("[...document.querySelectorAll('#terminal .typed')].some((one) => one.textContent.includes('typed'))")
+        browser.wait("document.querySelector('#terminal .end1') !== null")  # the robot's own bytes
         browser.value("document.getElementById('end-run').click()")
         browser.wait("document.body.dataset.over === 'true'")
         self.run.wait(60)
         self.assertEqual(browser.errors, [])
         self.assertGreater(self.report()["faults"][0]["fired"], 0)
+        self.assertEqual(self.report()["faults"][1]["fired"], 6)
+        self.assertIn('data = "74797065640d"', (self.out / "events.toml").read_text())
 
     def test_the_page_plays_pauses_steps_and_acts(self):
         if not find_chromium():

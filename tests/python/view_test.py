@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -101,6 +102,30 @@ class Page(unittest.TestCase):
         for track in ("robot0.uart robot0.pic", "robot0.uart robot0.linux", "robot0.pic log", "robot0.pic resets"):
             self.assertIn(track, rows)
         self.assertFalse(self.browser.value("document.getElementById('progress').hidden === false"))
+
+    def test_pictures_of_cameras_and_serial_lines_follow_the_time(self):
+        folder = self.out / "robot0.omni"
+        folder.mkdir()
+        self.addCleanup(shutil.rmtree, folder)
+        for frame, colour in ((30, b"\xff\0\0"), (60, b"\0\0\xff")):
+            (folder / f"{frame:08}.ppm").write_bytes(b"P6\n2 1\n255\n" + 2 * colour)
+        csv = self.out / "robot0.omni.csv"
+        csv.write_text("t_s,frame,sequence,width,height,format,hash\n1.0,30,0,2,1,RGB3,0\n2.0,60,1,2,1,RGB3,0\n")
+        self.addCleanup(csv.unlink)
+        self.load(self.address)
+        for time, frame, pixel in ((1.5, 30, [255, 0, 0, 255]), (2.5, 60, [0, 0, 255, 255])):
+            self.browser.value(f"window.puckloopView.seek({time})")
+            self.browser.wait(f"document.querySelector('#cameras canvas').dataset.frame === '{frame}'")
+            self.assertEqual(self.browser.value("[...document.querySelector('#cameras canvas').getContext('2d')"
+                                                ".getImageData(0, 0, 1, 1).data]"), pixel)
+        # Of the line as a terminal as many bytes as there were until then.
+        self.browser.value("""(() => { const { terminal } = window.puckloopView; terminal.chooser.value = 'robot0.uart';
+            terminal.choose(); })()""")
+        self.browser.wait("document.querySelectorAll('#terminal span').length > 2")
+        late = self.browser.value("document.getElementById('terminal').textContent.length")
+        self.browser.value("window.puckloopView.seek(1.2)")
+        self.browser.wait(f"document.getElementById('terminal').textContent.length < {late}")
+        self.assertIsNone(self.browser.value("document.getElementById('terminal-input')"))  # nothing to type into
 
     def test_it_plays_and_pauses(self):
         self.browser.value("window.puckloopView.seek(1.5)")  # the robot drives

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "scenarios/reader/faults/event_file.h"
 #include "scenarios/reader/faults/fault_places.h"
 #include "scenarios/reader/faults/fault_tables.h"
 #include "scenarios/reader/faults/fault_words.h"
@@ -57,6 +58,7 @@ FaultSpec from_toml(const std::string& keys) {
 /// A text that the parameter takes: its first choice, any word where it has none.
 std::string_view first_choice(const cosim::ParameterInfo& parameter) {
     if (parameter.key == "profile") return "0 s 4.1 V, 10 s 3.6 V";
+    if (parameter.key == "data") return "64 2c 0D";
     if (parameter.choices.empty()) return "T1Interrupt";
     return parameter.choices.substr(0, parameter.choices.find('|'));
 }
@@ -129,6 +131,11 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("swapped_wires link=robot0.uart from=robot0.pic", "no direction");
     said("break link=robot0.uart period=1ms", "too often");
     said("insert link=robot0.uart value=300", "out of range");
+    said("type link=robot0.uart", "'data' is missing");
+    for (const char* none : {"6", "64 2", "6 4", "xx", " "})
+        said(fmt::format("type link=robot0.uart data=\"{}\"", none), "are no bytes");
+    said("type link=robot0.uart data=64 baud=1", "baud is out of range");
+    said("type link=robot0.uart data=64 period=1ms", "too often");
     said("insert link=robot0.uart value=0x3g", "not a byte");
     said("parity link=robot0.uart mode=odd", "one of wrong, mark, space");
     said("drop link=robot0.uart name=\"a,b\"", "comma");
@@ -149,6 +156,32 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("weak_emitter link=robot0.ir emitter=13 gain=0.5", "emitter is out of range");
     said("drop link=robot0.uart \"", "a quote is open");
     said("drop link=robot0.uart link=x", "given twice");
+}
+
+TEST_CASE("a file of what was done has events and faults, and gives both again") {
+    const std::vector<std::string> words{
+        "flip link=robot0.uart from=robot0.pic bits=3 burst=true begin=1.5s p=0.1 r=0.4 1-h=90% "
+        "bytes=0x00,255",
+        "type link=robot0.uart from=robot0.linux begin=\"0.400260416667 s\" data=642c0d baud=9600.5",
+        "drop link=robot0.uart name=\"1e5 \\\" may_not_fire=true"};
+    std::string text = "[[event]]\nat = \"1 s\"\nlift = \"robot0\"\n";
+    for (const std::string& one : words)
+        text += fault_toml(fault_table_of(one));
+    const auto file = tests::scratch_path("events_and_faults");
+    std::ofstream(file) << text;
+    Scenario scenario = with_links();
+    scenario.events.events.emplace_back();
+    scenario.faults.push_back(one(words[0]));
+    apply_event_file(file, scenario);
+    CHECK(scenario.events.events.size() == 1);
+    CHECK(scenario.events.events.at(0).at == cosim::kSecond);
+    REQUIRE(scenario.faults.size() == 4);
+    for (std::size_t i = 0; i < words.size(); ++i)
+        CHECK(scenario.faults[i + 1] == one(words[i]));
+    CHECK(fault_tables_of(file).size() == 3);
+    std::ofstream(file) << "[[robot]]\n";
+    CHECK_THROWS_AS(apply_event_file(file, scenario), InputError);
+    std::filesystem::remove(file);
 }
 
 TEST_CASE("every kind of every place takes its own parameters") {

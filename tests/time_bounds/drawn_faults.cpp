@@ -53,6 +53,8 @@ std::string text_for(Draw& draw, const KindInfo& kind, const ParameterInfo& para
         }
         return in_quotes(profile);
     }
+    if (parameter.key == "data")
+        return in_quotes(draw.of(std::array{"41", "f2 07 00", "0d0a", "ff 00 ff 00"}));
     if (parameter.key == "vector") {
         if (kind.place == PlaceKind::Tam)
             return in_quotes(draw.of(std::array{"TIMER0_OVF", "TIMER1_COMPA", "USART0_RX", "USART1_RX"}));

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <fstream>
 #include <random>
 #include <set>
 
@@ -36,6 +38,74 @@ TEST_CASE("parts of the page and derived data have addresses") {
     CHECK(texts[0] == "uart1 prints: hello");
     CHECK(texts[1] == "");
     CHECK(answers.get("find?text=prints%3A+HELLO")->body.size() == 4);
+}
+
+TEST_CASE("bytes of a serial line come from a place of the trace on, whole rows only") {
+    const auto folder = write_results("view_serial");
+    const Recording recording(folder);
+    EventReader events(recording);
+    events.wait();
+    const Answers answers(recording, events);
+    const auto get = [&](const std::string& query) {
+        return nlohmann::json::parse(answers.get("serial?from=" + query)->body);
+    };
+    const auto all = get("0,robot0.uart1");
+    CHECK(all["from"] == nlohmann::json{"robot0.pic"});
+    CHECK(all["v"] == nlohmann::json{'A', 'B', 'C'});
+    CHECK(all["k"] == nlohmann::json{0, 0, 0});
+    CHECK(all["f"] == nlohmann::json{0, 0, 0});
+    CHECK(all["t"][0].get<double>() == Approx(0.5 + 9.0 / 115'200));
+    CHECK(all["more"] == false);
+    const auto none = get(all["next"].dump() + ",robot0.uart1");
+    CHECK(none["v"].empty());
+    CHECK(none["next"] == all["next"]);
+    CHECK(get("0,robot0.uart")["v"].empty());
+    CHECK(get("99999999,robot0.uart1")["v"].empty());
+    // A row that is being written, then its end; lost, typed and broken ones.
+    const auto trace = folder / "trace.csv";
+    std::ofstream(trace, std::ios::app)
+        << "2.1,robot0.uart1,robot0.pic,uart,44,8N1,2.0,8.68e-06,0,drop\n"
+        << "2.2,robot0.uart1,robot0.uart1,uart,45,8N1,2.0,8.68e-06,0,insert\n"
+        << "2.3,robot0.uart1,robot0.pic,break,00,8N1,2.0,8.68e-06,0,\nnonsense\n,robot0.uart1,\n"
+        << "2.4,robot0.uart1,robot0.pic,ua";
+    const auto more = get(all["next"].dump() + ",robot0.uart1");
+    CHECK(more["k"] == nlohmann::json{1, 2, 3});
+    CHECK(more["from"] == nlohmann::json{"robot0.pic", "robot0.uart1"});
+    CHECK(more["f"] == nlohmann::json{0, 1, 0});
+    std::ofstream(trace, std::ios::app) << "rt,46,8N1,2.0,8.68e-06,0,\n";
+    CHECK(get(more["next"].dump() + ",robot0.uart1")["v"] == nlohmann::json{'F'});
+    for (const char* wrong : {"0", "0,", ",robot0.uart1", "x,robot0.uart1", "-1,robot0.uart1", "0,%zz"})
+        CHECK_FALSE(answers.get(std::string("serial?from=") + wrong));
+    CHECK_FALSE(answers.get("serial?from=0," + std::string(201, 'x')));
+}
+
+TEST_CASE("pictures of cameras are had by number, and nothing else in their folders") {
+    const auto folder = write_results("view_cameras");
+    const Recording recording(folder);
+    EventReader events(recording);
+    events.wait();
+    const Answers answers(recording, events);
+    CHECK(answers.get("cameras")->body == "[]");
+    std::filesystem::create_directories(folder / "robot0.omni");
+    const std::string picture = "P6\n1 1\n255\nabc";
+    std::ofstream(folder / "robot0.omni/00000030.ppm") << picture;
+    std::ofstream(folder / "robot0.omni/secret.ppm") << "no";
+    std::filesystem::create_symlink("secret.ppm", folder / "robot0.omni/00000060.ppm");
+    std::ofstream(folder / "robot0.omni.csv")
+        << "t_s,frame,sequence,width,height,format,hash\n0.100000,29,0,1,1,RGB3,0\n0.200000,30,1,1,1,RGB3,0\n"
+        << "nonsense\n0.3,-1,2,1,1,RGB3,0\n0.4,1e300,2,1,1,RGB3,0\n";
+    const auto list = nlohmann::json::parse(answers.get("cameras")->body);
+    REQUIRE(list.size() == 1);
+    CHECK(list[0]["robot"] == "robot0");
+    CHECK(list[0]["kind"] == "omni");
+    CHECK(list[0]["t"] == nlohmann::json{0.2});
+    CHECK(list[0]["frame"] == nlohmann::json{30});
+    const std::string number = list[0]["camera"].dump();
+    CHECK(answers.get("picture?of=" + number + ",30")->body == picture);
+    for (const std::string& wrong : {number, number + ",", number + ",29", number + ",60", number + ",-1",
+                                     number + ",30,1", std::string("0,30"), std::string("99,30"),
+                                     std::string("x,30"), number + ",secret", number + ",../robot0.omni/30"})
+        CHECK_FALSE(answers.get("picture?of=" + wrong));
 }
 
 TEST_CASE("everything else has none: names of files, paths, broken numbers") {

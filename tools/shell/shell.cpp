@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "bench/debugger/line_editor.h"
-#include "tools/shell/words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -45,30 +44,6 @@ json time_words(const std::string& text) {
     return bare ? json(text + " s") : json(text);
 }
 
-std::string value_text(const json& reply, const std::string& field) {
-    if (!field.empty()) {
-        const auto& fields = reply.at("fields");
-        if (!fields.contains(field)) {
-            std::vector<std::string_view> known;
-            for (const auto& one : fields.items())
-                known.push_back(one.key());
-            throw InputError("", field, "is no field of it",
-                             fmt::format("one of {}", fmt::join(known, ", ")));
-        }
-        return fields.at(field).dump();
-    }
-    if (!reply.contains("value")) return reply.value("data", "");
-    const auto value = reply.at("value").get<std::uint64_t>();
-    const int digits = reply.contains("bits") ? reply.at("bits").get<int>() / 4 : 2 * reply.value("bytes", 1);
-    std::string text = fmt::format("0x{:0{}x} {}", value, digits, value);
-    const json named = reply.value("fields", json(json::object()));
-    for (const auto& one : named.items())
-        if (one.value() != 0)
-            text += one.value() == 1 ? fmt::format(" {}", one.key())
-                                     : fmt::format(" {}={}", one.key(), one.value().dump());
-    return text;
-}
-
 std::string frame_text(const json& frame) {
     std::string text =
         fmt::format("{:.9f}", static_cast<double>(frame.at("time_ps").get<std::int64_t>()) * 1e-12);
@@ -102,8 +77,10 @@ struct ShellCommands {
             shell.take(shell.ask({{"op", "step"}, {"to", time_words(argument)}}));
     }
     static void until(Shell& shell, const std::string& argument) {
-        const json condition = condition_words(needed(argument, "a condition"), shell.board_);
-        const json reply = shell.ask({{"op", "step"}, {"for", "60 s"}, {"until", condition}});
+        const json reply = shell.ask({{"op", "step"},
+                                      {"for", "60 s"},
+                                      {"until", needed(argument, "a condition")},
+                                      {"node", shell.board_}});
         shell.take(reply);
         if (!reply.value("met", false)) throw InputError("", "until", "did not hold within 60 s");
         if (reply.contains("frame")) std::printf("%s\n", frame_text(reply.at("frame")).c_str());
@@ -133,21 +110,13 @@ struct ShellCommands {
         std::string rest = needed(argument, "what to read");
         while (!rest.empty()) {
             const auto [name, others] = split(rest);
-            std::string field;
-            auto request = place_words(name, field);
-            if (!request) throw InputError("", name, "is no register, variable or address", "see help");
-            (*request)["op"] = "read";
-            (*request)["node"] = shell.board_;
-            std::printf("%s = %s\n", name.c_str(), value_text(shell.ask(*request), field).c_str());
+            const json reply = shell.ask({{"op", "read"}, {"node", shell.board_}, {"what", name}});
+            std::printf("%s = %s\n", name.c_str(), reply.value("text", "").c_str());
             rest = others;
         }
     }
     static void write(Shell& shell, const std::string& argument) {
         const auto [name, value] = split(needed(argument, "what to write"));
-        std::string field;
-        auto request = place_words(name, field);
-        if (!request || !field.empty())
-            throw InputError("", name, "is no register, variable or address", "see help");
         std::size_t end = 0;
         unsigned long long number = 0;
         try {
@@ -157,16 +126,24 @@ struct ShellCommands {
         }
         if (end == 0 || end != value.size())
             throw InputError("", value, "is no number", "such as 12 or 0x4e");
-        (*request)["op"] = "write";
-        (*request)["node"] = shell.board_;
-        (*request)["value"] = number;
-        shell.ask(*request);
+        shell.ask({{"op", "write"}, {"node", shell.board_}, {"what", name}, {"value", number}});
     }
     static void act(Shell& shell, const std::string& argument) {
         shell.ask({{"op", "act"}, {"command", needed(argument, "a command of `puckloop act`")}});
     }
     static void fault(Shell& shell, const std::string& argument) {
         shell.take(shell.ask({{"op", "fault"}, {"fault", needed(argument, "a fault")}}));
+    }
+    static void type(Shell& shell, const std::string& argument) {
+        const auto [link, rest] = split(needed(argument, "a line"));
+        const auto [from, typed] = split(needed(rest, "the end that is typed at"));
+        std::string text = needed(typed, "what to type");
+        if (text.size() > 1 && text.front() == '"' && text.back() == '"') {
+            const json quoted = json::parse(text, nullptr, false);
+            if (!quoted.is_string()) throw InputError("", text, "is no text", R"("d,100,100\r")");
+            text = quoted.get<std::string>();
+        }
+        shell.take(shell.ask({{"op", "type"}, {"link", link}, {"from", from}, {"text", text}}));
     }
     static void save(Shell& shell, const std::string& argument) {
         // The run may have been started in another folder.
@@ -176,8 +153,7 @@ struct ShellCommands {
     /// With arguments: frames like this are kept from now on. Without: those that came since.
     static void frames(Shell& shell, const std::string& argument) {
         if (!argument.empty()) {
-            const json condition = condition_words("frame " + argument, shell.board_);
-            shell.ask({{"op", "capture"}, {"frame", condition.at("frame")}});
+            shell.ask({{"op", "capture"}, {"frame", argument}});
             shell.captures_ = true;
             return;
         }
@@ -211,6 +187,9 @@ std::span<const Shell::Command> ShellCommands::all() {
         Shell::Command{"act", "COMMAND", "as `puckloop act`: move can to 10 cm, 0 cm", act},
         Shell::Command{"fault", "KIND KEY=VALUE...",
                        "as --fault, from now on: drop link=robot0.uart begin=2s", fault},
+        Shell::Command{
+            "type", "LINK FROM TEXT",
+            "into a line as that end, \\r and \\n in \"...\": type robot0.uart1 robot0.uart1 \"v\\r\"", type},
         Shell::Command{"frames", "[KEY=VALUE...]", "keep frames like this from now on; show those kept",
                        frames},
         Shell::Command{"save", "FILE", "a snapshot, for `puckloop run --from`", save},

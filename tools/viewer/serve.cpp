@@ -29,8 +29,8 @@ void serve_until_interrupted(view::HttpServer& server) {
 void serve_live(const std::string& folder, int port, bool opens) {
     view::Driver driver(folder);  // from here on the run's files are its own, not an earlier run's
     const view::Recording recording(folder, true);
-    const view::EventPasses passes(
-        recording, [&] { return driver.on(); }, [&] { return driver.epoch(); });
+    const view::EventPasses passes(recording, {[&] { return driver.on(); }, [&] { return driver.epoch(); },
+                                               [&] { return driver.stands(); }});
     const view::Answers answers(
         recording, [&] { return passes.latest(); }, driver);
     view::HttpServer server(

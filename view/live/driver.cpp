@@ -66,6 +66,7 @@ bool Driver::serve() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [this] { return end_ || playing_ || !waiting_.empty(); });
         ends = end_;
+        busy_ = true;
         if (!waiting_.empty()) {
             work = waiting_.front();
             waiting_.pop_front();
@@ -84,6 +85,7 @@ bool Driver::serve() {
     const auto begun = Clock::now();
     carry_out(work);
     std::unique_lock lock(mutex_);
+    busy_ = false;
     if (over_) return false;
     if (work.kind == Work::Kind::Step && speed > 0) {
         const auto due = begun + std::chrono::duration_cast<Clock::duration>(
@@ -109,6 +111,9 @@ void Driver::carry_out(const Work& work) {
     case Work::Kind::Fault:
         restart(json{{"op", "fault"}, {"fault", work.text}}.dump(), "fault " + work.text);
         break;
+    case Work::Kind::Type:
+        type(work.text);
+        break;
     case Work::Kind::Look:
         break;
     }
@@ -126,10 +131,9 @@ void Driver::look() {
         board = board_;
     }
     json values = json::array();
-    for (json& item : items) {
-        item["op"] = "read";
-        item["node"] = board;
-        json reply = json::parse(run_.ask(item.dump()), nullptr, false);
+    for (const json& item : items) {
+        const json asked{{"op", "read"}, {"node", board}, {"what", item}};
+        json reply = json::parse(run_.ask(asked.dump()), nullptr, false);
         if (!reply.is_object()) throw RunError("a reply of the run that is none");
         values.push_back(std::move(reply));
     }
@@ -140,8 +144,8 @@ void Driver::look() {
 }
 
 void Driver::until(const Work& work) {
-    const json asked{
-        {"op", "step"}, {"for", fmt::format("{} ms", work.ms)}, {"until", json::parse(work.text)}};
+    json asked{{"op", "step"}, {"for", fmt::format("{} ms", work.ms)}, {"until", work.text}};
+    if (!work.board.empty()) asked["node"] = work.board;
     const auto reply = json::parse(run_.ask(asked.dump()), nullptr, false);
     if (!reply.is_object()) throw RunError("a reply of the run that is none");
     const std::lock_guard lock(mutex_);
@@ -168,6 +172,12 @@ void Driver::restart(const std::string& request, const std::string& command) {
     if (!reply.value("ended", false)) return;
     over_ = true;
     why_ = reply.value("ended_why", "");
+}
+
+void Driver::type(const std::string& request) {
+    const json asked = json::parse(request);
+    restart(request, fmt::format("type {} into {} as {}", asked.at("text").dump(),
+                                 asked.at("link").get<std::string>(), asked.at("from").get<std::string>()));
 }
 
 /// Under the lock.
@@ -252,12 +262,13 @@ std::string Driver::request(const std::string& text) {
         waiting_.push_back({.kind = Work::Kind::Act, .text = command});
     } else if (what == "until") {
         const double ms = number_of("ms", kMostUntilMs);
-        const auto condition = asked.find("condition");
-        if (condition == asked.end() || !condition->is_object()) return "a condition is expected";
+        const std::string condition = string_of("condition"), board = string_of("board");
+        if (condition.empty() || condition.size() > kLongestCommand) return "a condition is expected";
+        if (board.size() > kLongestName) return "a board's name is expected";
         if (!(ms >= 1.0 && ms <= kMostUntilMs)) return "1 to 60,000 ms are expected";
         playing_ = false;
         waiting_.push_back(
-            {.kind = Work::Kind::Until, .ms = static_cast<int>(ms), .text = condition->dump()});
+            {.kind = Work::Kind::Until, .ms = static_cast<int>(ms), .text = condition, .board = board});
     } else if (what == "back") {
         const double to = number_of("to_s", -1.0);
         if (!(to >= 0.0)) return "a time is expected";
@@ -267,11 +278,21 @@ std::string Driver::request(const std::string& text) {
         const std::string fault = string_of("fault");
         if (fault.empty() || fault.size() > kLongestCommand) return "a fault is expected";
         waiting_.push_back({.kind = Work::Kind::Fault, .text = fault});
+    } else if (what == "type") {
+        const std::string link = string_of("link"), from = string_of("from"), typed = string_of("text");
+        if (link.empty() || from.empty() || link.size() > kLongestName || from.size() > kLongestName)
+            return "a line and one of its ends are expected";
+        if (typed.empty() || typed.size() > kLongestCommand)
+            return "a text of at most 1000 bytes is expected";
+        const json request{{"op", "type"}, {"link", link}, {"from", from}, {"text", typed}};
+        waiting_.push_back({.kind = Work::Kind::Type, .text = request.dump()});
     } else if (what == "look") {
         const auto items = asked.find("items");
         const std::string board = string_of("board");
         if (items == asked.end() || !items->is_array() || items->size() > kMostItems ||
-            !std::all_of(items->begin(), items->end(), [](const json& item) { return item.is_object(); }))
+            !std::all_of(items->begin(), items->end(), [](const json& item) {
+                return item.is_string() && item.get_ref<const std::string&>().size() <= kLongestName;
+            }))
             return "a list of at most 40 things to read is expected";
         if (board.size() > kLongestName) return "a board's name is expected";
         board_ = board;
@@ -304,6 +325,11 @@ std::string Driver::state() const {
 std::uint64_t Driver::epoch() const {
     const std::lock_guard lock(mutex_);
     return epoch_;
+}
+
+bool Driver::stands() const {
+    const std::lock_guard lock(mutex_);
+    return !playing_ && !busy_ && waiting_.empty();
 }
 
 bool Driver::on() const {

@@ -27,9 +27,11 @@ class Driver {
     Driver& operator=(const Driver&) = delete;
 
     /// A request of a page, JSON: "page" (its name), "do": "play" with "speed" (times real time; 0: as fast
-    /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "until" with "condition" (of
-    /// the protocol's step) and "ms" (at most so long), "back" with "to_s", "fault" with "fault" (as
-    /// --fault), "look" with "board" and "items" (requests to read, at most kMostItems), "end", "take". The
+    /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "until" with "condition" (as
+    /// typed), "board" (that it means if it names none) and "ms" (at most so long), "back" with "to_s",
+    /// "fault" with "fault" (as --fault), "type" with "link", "from" and "text" (what is typed into the line
+    /// as if that end had sent it), "look" with "board" and "items" (what to read, as typed, at most
+    /// kMostItems), "end", "take". The
     /// first page that asks for anything drives, others are refused until they "take" it. Returns "" or why
     /// it is refused.
     std::string request(const std::string& text);
@@ -42,6 +44,8 @@ class Driver {
     const std::string& possible() const { return possible_; }
     /// The run goes on.
     bool on() const;
+    /// It does not go on just now.
+    bool stands() const;
     /// As in state().
     std::uint64_t epoch() const;
 
@@ -56,11 +60,12 @@ class Driver {
         bool refused = false;
     };
     struct Work {
-        enum class Kind { Step, Act, Until, Back, Fault, Look };
+        enum class Kind { Step, Act, Until, Back, Fault, Type, Look };
         Kind kind = Kind::Step;
-        int ms = 0;          // of a step
-        double to_s = 0.0;   // of going back
-        std::string text{};  // command, fault, or condition (JSON)
+        int ms = 0;           // of a step
+        double to_s = 0.0;    // of going back
+        std::string text{};   // command, fault, or condition
+        std::string board{};  // of a condition
     };
     void run() noexcept;
     bool serve();
@@ -69,6 +74,7 @@ class Driver {
     void act(const std::string& command);
     void until(const Work& work);
     void restart(const std::string& request, const std::string& command);
+    void type(const std::string& request);
     void look();
     void note(const std::string& command, const std::string& answer, bool refused);
     void end_run();
@@ -84,6 +90,7 @@ class Driver {
     std::uint64_t epoch_ = 0;
     double time_s_ = 0.0, speed_ = 1.0;
     bool playing_ = false, end_ = false, over_ = false;
+    bool busy_ = false;  ///< the run has been asked for something
     std::thread thread_;
 };
 

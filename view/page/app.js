@@ -1,12 +1,14 @@
 // Joins the parts: reads the run, keeps the time, hears keys and buttons, draws when something has changed.
 import { ArenaView } from './arena.js';
-import { BoardPart, conditionOf } from './board.js';
+import { BoardPart } from './board.js';
+import { Cameras } from './cameras.js';
 import { FaultForm } from './fault_form.js';
 import { Live, sensorsAgainAfter } from './live.js';
 import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors } from './model.js';
 import { palette } from './palette.js';
 import { Panel } from './panel.js';
 import { makeSource } from './source.js';
+import { Terminal } from './terminal.js';
 import { TimelineView } from './timeline.js';
 
 const element = (id) => document.getElementById(id);
@@ -27,12 +29,13 @@ class App {
     const head = await this.source.head();
     const paths = parsePoses(await this.source.poses(), head.paths);
     this.run = { head, paths, leds: new Leds(), events: new Events(), beams: null, sensors: null, tracks: [], rows: [],
-      begin: () => { this.stale = passOf(this.run.events.generation); this.run.events = new Events(); this.run.leds = new Leds(); this.run.beams = null; this.select(-1); },
+      begin: () => { this.stale = passOf(this.run.events.generation); this.run.events = new Events(); this.run.leds = new Leds(); this.run.beams = null; this.terminal.begin(); this.select(-1); },
       now: 0, duration: Math.max(head.duration_s, 1e-3), redraw: () => { this.dirty = true; },
       sensorsOf: async (robot) => parseSensors(await this.source.sensors(robot), head.sensors) };
     const redraw = this.run.redraw;
     this.arena = new ArenaView(element('arena'), this.run, (robot) => this.choose(robot), redraw);
     this.timeline = new TimelineView(element('timeline'), this.run, (time, number) => this.jump(time, number), redraw);
+    this.cameras = new Cameras(element('cameras'), this.run, this.source);
     this.panel = new Panel(element('panel'), this.run, this.source, (robot) => this.choose(robot),
       (time, number) => this.jump(time, number));
     if (head.live) {
@@ -40,16 +43,20 @@ class App {
       await this.live.refresh();
       element('live').hidden = false;
       element('speed').append(new Option('max', 0));
-      const possible = await this.source.json('possible');
+      const possible = this.possible = await this.source.json('possible');
       this.board = new BoardPart(element('board-part'), possible.boards || [], (request) => this.drive(request));
       this.faultForm = new FaultForm(element('fault-form'), possible, (request) => this.drive(request));
       this.arena.carry = (name, to) => this.drive({ do: 'act', command: `move ${name} to ${to.x.toFixed(4)} m, ${to.y.toFixed(4)} m` });
     }
+    const serial = head.live ? this.possible.places.filter((place) => place.on === 'uart') : (head.report || {}).serial;
+    this.terminal = new Terminal(element('terminal-part'), this.source.serial ? serial || [] : [], this.source,
+      this.live ? (request) => this.drive(request) : null, redraw);
     this.fill();
     this.listen();
     this.theme();
     this.timeline.all();
     if (head.robots > 0) this.choose(0);
+    await this.cameras.load();
     document.body.dataset.ready = 'arena';
     requestAnimationFrame((time) => this.frame(time));
     if (this.live) this.live.poll().catch((error) => this.trouble(error));
@@ -60,6 +67,7 @@ class App {
       const { over } = this.live.state;
       await this.readEvents();
       await this.panel.load(this.robot);
+      await this.cameras.load();
       if (over && this.settled) break;
       this.settled = over;
     }
@@ -160,6 +168,7 @@ class App {
   choose(robot) {
     this.robot = robot;
     this.panel.select(robot).catch((error) => this.trouble(error));
+    this.cameras.show(this.run.head.stations[robot]);
     if (Number(element('follow').value) >= 0) element('follow').value = robot;
     document.body.dataset.robot = this.run.head.stations[robot];
     this.run.redraw();
@@ -301,9 +310,9 @@ class App {
     }
     if (target.id === 'until') {
       if (event.key !== 'Enter' || !target.value.trim()) return undefined;
-      const condition = conditionOf(target.value.trim(), this.board.board);
-      target.classList.toggle('failed', !condition);
-      if (condition) { this.live.atEdge = true; this.drive({ do: 'until', condition }); }
+      target.classList.remove('failed');
+      this.live.atEdge = true;
+      this.drive({ do: 'until', condition: target.value.trim(), board: this.board.board });
       return undefined;
     }
     if (target.tagName === 'INPUT' && target.type !== 'range' && target.type !== 'checkbox' && target.id !== 'find') return undefined;
@@ -329,6 +338,25 @@ class App {
     event.preventDefault();
     return Promise.resolve(act()).catch((error) => this.trouble(error));
   }
+  /** For pictures: without what one clicks on. */
+  still(dark) {
+    document.body.classList.add('still');
+    this.dark = dark;
+    this.theme();
+    this.arena.fit();
+    this.timeline.all();
+  }
+  /** Everything as it is at a time, drawn. */
+  async show(time, speed) {
+    this.seek(time);
+    this.stillSpeed = speed;
+    await this.panel.refreshRecent();
+    const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    this.panel.plottedAt = -1e9;
+    this.run.redraw();
+    await drawn();
+    await this.cameras.pending;
+  }
   trouble(error) {
     document.body.dataset.trouble = error.message;
     element('detail').textContent = `${error.message} (is \`puckloop view\` still on?)`;
@@ -352,6 +380,10 @@ class App {
     document.body.dataset.over = state.over;
     document.body.dataset.epoch = state.epoch;
     this.board.draw(state.look);
+    if (state.time_s !== this.readUntil) {
+      this.readUntil = state.time_s;
+      this.terminal.read().catch((error) => this.trouble(error));
+    }
     const last = state.acts.at(-1);
     const text = state.over ? `the run is over: ${state.why}` : last ? `${last.command}: ${last.answer || 'done in the next step'}` : '';
     const said = `${last ? last.number : 0} ${text}`;
@@ -359,12 +391,13 @@ class App {
       this.said = said;
       element('detail').textContent = text;
       element('detail').className = last && last.refused ? 'failed' : '';
+      if (last && last.command.startsWith('until ')) element('until').classList.toggle('failed', last.refused);
     }
   }
 
   frame(time) {
     requestAnimationFrame((next) => this.frame(next));
-    const { run } = this, speed = Number(element('speed').value);
+    const { run } = this, speed = this.stillSpeed || Number(element('speed').value);
     if (this.playing) {
       if (this.before !== null) this.seek(run.now + (speed * Math.min(time - this.before, 200)) / 1000);
       this.before = time;
@@ -378,6 +411,9 @@ class App {
     this.arena.draw(colours, { follow: Number(element('follow').value), trail: Number(element('trail').value),
       beams: element('beams').checked, persist: Math.max(0.1 * speed, 0.02), selected: this.robot });
     this.timeline.draw(colours);
+    // Positions come each 100 ms, bytes at once.
+    this.terminal.draw(this.live && this.live.atEdge ? Math.max(run.now, this.live.state.time_s) : run.now);
+    this.cameras.draw(run.now);
     this.panel.draw(colours, Math.max(0, this.timeline.from), Math.min(this.timeline.to, run.duration));
     if (!(time - this.recentAt < recentMilliseconds)) {
       this.recentAt = time;

@@ -15,6 +15,9 @@ class ServerSource {
   events(from) { return this.bytes(`events?from=${from}`); }
   leds(from) { return this.bytes(`leds?from=${from}`); }
   sensors(robot) { return this.bytes(`sensors?robot=${robot}`); }
+  cameras() { return this.json('cameras'); }
+  picture(camera, frame) { return this.bytes(`picture?of=${camera},${frame}`); }
+  serial(from, link) { return this.json(`serial?from=${from},${encodeURIComponent(link)}`); }
   texts(numbers) { return this.json(`texts?numbers=${numbers.join(',')}`); }
   async find(text) { return new Uint32Array(await this.bytes(`find?text=${encodeURIComponent(text)}`)); }
 }
@@ -34,6 +37,8 @@ class FileSource {
   events() { return this.bytes('events'); }
   leds() { return this.bytes('leds'); }
   sensors(robot) { return this.bytes(`sensors-${robot}`); }
+  cameras() { return this.json('cameras'); }
+  picture(camera, frame) { return this.bytes(`picture-${camera}-${frame}`); }
   async all() {
     if (this.list) return this.list;
     const buffer = await this.bytes('texts');

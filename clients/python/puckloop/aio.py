@@ -108,6 +108,9 @@ class Board:
     async def register(self, name: str) -> Register:
         return await self._run._do(session.read_register(self.name, name))
 
+    async def value(self, what: str) -> int:
+        return await self._run._do(session.read_value(self.name, what))
+
     async def variable(self, name: str, size: int | None = None) -> Value:
         return await self._run._do(session.read_variable(self.name, name, size))
 
@@ -265,7 +268,7 @@ class Run:
         self._session.ended = self._launched.report(reply)
 
     # Time.
-    async def step(self, to: Time | None = None, for_: Time | None = None, until: Mapping[str, Any] | None = None,
+    async def step(self, to: Time | None = None, for_: Time | None = None, until: Mapping[str, Any] | str | None = None,
                    every: Time | None = None) -> Stepped:
         return await self._do(self._session.step(to, for_, until, every))
 
@@ -290,6 +293,9 @@ class Run:
 
     async def act(self, command: str) -> None:
         await self._do(self._session.act(command))
+
+    async def type(self, link: str, sender: str, text: str | bytes, baud: float | None = None) -> None:
+        await self._do(self._session.type(link, sender, text, baud))
 
     # Snapshots and faults.
     async def save(self, file: str | os.PathLike[str]) -> pathlib.Path:

@@ -58,6 +58,10 @@ class Board:
         """By its data-sheet name ("TMR1"), or one of the core ("W0", "PC"). RequestError: there is none."""
         return self._run._do(session.read_register(self.name, name))
 
+    def value(self, what: str) -> int:
+        """By what one types: "TMR1", "U2STA.TRMT" (a field), a variable, "0x850:4" (memory). RequestError."""
+        return self._run._do(session.read_value(self.name, what))
+
     def variable(self, name: str, size: int | None = None) -> Value:
         """By its symbol; `size` in bytes where the image does not say. RequestError: no symbol of this name."""
         return self._run._do(session.read_variable(self.name, name, size))
@@ -237,13 +241,14 @@ class Run:
         self._launched.kill()
 
     # Time.
-    def step(self, to: Time | None = None, for_: Time | None = None, until: Mapping[str, Any] | None = None,
+    def step(self, to: Time | None = None, for_: Time | None = None, until: Mapping[str, Any] | str | None = None,
              every: Time | None = None) -> Stepped:
         """Goes on to a simulated time, or for a span.
 
-        `until`: {"frame": {...}}, {"text": ..., "frame": {...}} or {"node": ..., "register": ..., "is": ">=",
-        "value": ...}, looked at each `every` (1 ms), ends the step earlier. RequestError: a time that is past, an
-        unknown name. RunEnded: the run ended before.
+        `until` ends the step earlier: 'robot0.pic TMR1 >= 9', 'text "ok"', 'frame link=robot0.uart value=4e', or the
+        same as {"frame": {...}}, {"text": ..., "frame": {...}} or {"node": ..., "register": ..., "is": ">=",
+        "value": ...}; it is looked at each `every` (1 ms). RequestError: a time that is past, an unknown name, no
+        condition. RunEnded: the run ended before.
         """
         return self._do(self._session.step(to, for_, until, every))
 
@@ -272,6 +277,12 @@ class Run:
     def act(self, command: str) -> None:
         """Does something to the world in its next step, as `puckloop act`: "move can to 10 cm, 0 cm". RequestError."""
         self._do(self._session.act(command))
+
+    def type(self, link: str, sender: str, text: str | bytes, baud: float | None = None) -> None:
+        """Types into a serial line from now on, as if `sender`, one of its ends, had sent it: 8N1 without a pause, at
+        the line's nominal rate unless `baud` is given, behind what was typed there before. A text is UTF-8.
+        RequestError: no such line or end, more than 4096 bytes, a run with lines to the outside."""
+        self._do(self._session.type(link, sender, text, baud))
 
     # Snapshots and faults.
     def save(self, file: str | os.PathLike[str]) -> pathlib.Path:

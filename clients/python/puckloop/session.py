@@ -63,7 +63,7 @@ class Session:
             raise RunEnded(f"the run ended at {self.time_s:.6f} s: {self.ended.why}", self.ended.success)
 
     # Time.
-    def step(self, to: Time | None, for_: Time | None, until: Mapping[str, Any] | None,
+    def step(self, to: Time | None, for_: Time | None, until: Mapping[str, Any] | str | None,
              every: Time | None) -> Operation[Stepped]:
         reply = yield "step", {"to": to, "for": for_, "until": until, "every": every}
         if not reply.get("met"):
@@ -100,6 +100,11 @@ class Session:
         self._goes_on()
         self.faults += faults
 
+    def type(self, link: str, sender: str, text: str | bytes, baud: float | None) -> Operation[None]:
+        what = {"data": text.hex()} if isinstance(text, bytes) else {"text": text}
+        yield "type", {"link": link, "from": sender, "baud": baud, **what}
+        self._goes_on()
+
     def log(self, node: str) -> str:
         file = self.results / f"{node}.log"
         return file.read_text(errors="replace") if file.is_file() else ""
@@ -109,6 +114,11 @@ class Session:
 def read_register(node: str, name: str) -> Operation[Register]:
     reply = yield "read", {"node": node, "register": name}
     return Register(name, int(reply["value"]), int(reply["bits"]), dict(reply["fields"]))
+
+
+def read_value(node: str, what: str) -> Operation[int]:
+    reply = yield "read", {"node": node, "what": what}
+    return int(reply["value"]) if "value" in reply else int.from_bytes(bytes.fromhex(reply["data"]), "little")
 
 
 def read_variable(node: str, name: str, size: int | None) -> Operation[Value]:

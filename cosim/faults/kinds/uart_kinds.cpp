@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/faults/kinds/kind_table.h"
+#include "cosim/faults/typed_bytes.h"
 
 #include <fmt/format.h>
 
@@ -56,15 +57,20 @@ void check_uart_fault(const FaultSpec& spec, const KindInfo& kind) {
         refuse("no frame has so many bits", "bit + bits of at most 9");
     if (kind.mark == FaultKind::Delay && given.number("jitter") > given.number("delay"))
         refuse("the jitter is larger than the delay", "frames that are not early");
+    const std::size_t typed = kind.name == kTypedKind ? typed_bytes(given.text("data")).size() : 1;
+    if (typed == 0)
+        refuse(fmt::format("data '{}' are no bytes", given.text("data")),
+               "pairs of hexadecimal digits, such as \"64 2c 0d\"");
+    if (typed > kMostTyped) refuse(fmt::format("{} bytes of data are too many", typed), "at most 100000");
     if (kind.style != Style::Times || spec.period == 0) return;
     const double span = spec.end == kNever
                             ? kMostInstants + 1
                             : static_cast<double>(spec.end - spec.begin) / static_cast<double>(spec.period);
     const double most =
         spec.probability < 1 || spec.burst ? kMostInstants + 1 : static_cast<double>(spec.count);
-    if (std::min(span, most) > kMostInstants)
+    if (std::min(span, most) * static_cast<double>(typed) > kMostInstants)
         refuse(fmt::format("{} happens too often", kind.name),
-               "'end', 'for' or 'count', at most 100000 instants");
+               "'end', 'for' or 'count', at most 100000 instants, or bytes that are typed");
 }
 
 std::vector<KindInfo> uart_kinds() {
@@ -79,6 +85,8 @@ std::vector<KindInfo> uart_kinds() {
         kind("duplicate", Style::Each, FaultKind::Duplicate),
         kind("insert", Style::Each, FaultKind::Insert, {optional("value", Unit::Byte, 0, 255)}),
         kind("swap", Style::Each, FaultKind::Swap, {}, "reorder"),
+        kind(kTypedKind, Style::Times, FaultKind::Insert,
+             {{"data", Unit::Text, 0, 0, {}, true}, optional("baud", Unit::Number, 50, 4e6)}),
         // Records
         kind("cut", Style::Each, FaultKind::Cut, {{"again", Unit::Ratio, 0, 1, 0}}),
         kind("truncate", Style::Each, FaultKind::Truncate, {required("keep", Unit::Integer, 0, 1e6)}),

@@ -133,21 +133,6 @@ std::string toml_string(std::string_view text) {
     return quoted + '"';
 }
 
-std::string toml_value(const TomlValue& value) {
-    if (const auto* text = std::get_if<std::string>(&value.data)) return toml_string(*text);
-    if (const auto* number = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *number);
-    if (const auto* number = std::get_if<double>(&value.data)) {
-        const std::string text = fmt::format("{}", *number);
-        return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
-    }
-    if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";
-    std::string list;
-    if (const auto* items = std::get_if<TomlArray>(&value.data))
-        for (const TomlValue& item : *items)
-            list += (list.empty() ? "" : ", ") + toml_value(item);
-    return "[" + list + "]";
-}
-
 std::string plain_value(const TomlValue& value, const ActionKey& key, std::span<const ActionKey> keys) {
     if (const auto* text = std::get_if<std::string>(&value.data))
         return key.name == "name" ? in_command(*text, keys) : *text;
@@ -234,6 +219,21 @@ std::string command_text(const TomlValue& table) {
         if (const TomlValue* value = find(table, key.name); value != nullptr)
             text += fmt::format(" {} {}", key.name, plain_value(*value, key, keys));
     return text;
+}
+
+std::string toml_value(const TomlValue& value) {
+    if (const auto* text = std::get_if<std::string>(&value.data)) return toml_string(*text);
+    if (const auto* number = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *number);
+    if (const auto* number = std::get_if<double>(&value.data)) {
+        const std::string text = fmt::format("{}", *number);
+        return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+    }
+    if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";
+    std::string list;
+    if (const auto* items = std::get_if<TomlArray>(&value.data))
+        for (const TomlValue& item : *items)
+            list += (list.empty() ? "" : ", ") + toml_value(item);
+    return "[" + list + "]";
 }
 
 std::string toml_text(const TomlValue& table) {

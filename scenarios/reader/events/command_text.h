@@ -18,5 +18,7 @@ std::string verb_of(const TomlValue& table);
 /// The verb and its keys in `table` as one line for a user, or as lines of TOML.
 std::string command_text(const TomlValue& table);
 std::string toml_text(const TomlValue& table);
+/// A value that is no table, as TOML has it.
+std::string toml_value(const TomlValue& value);
 
 }  // namespace puckloop::scenarios

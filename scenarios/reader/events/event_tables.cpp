@@ -259,6 +259,7 @@ std::vector<Event> read_event_file(const std::filesystem::path& file) {
     const TomlValue root = read_toml(file);
     Reader top(file.string(), "", root);
     std::vector<Event> events = read_events(top);
+    top.tables("fault");  // there may be some
     top.finish();
     return events;
 }

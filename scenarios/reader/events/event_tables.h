@@ -12,7 +12,7 @@ namespace puckloop::scenarios {
 /// The [[event]] tables. What they name is checked by physics::check_events(), later.
 std::vector<physics::Event> read_events(Reader& top);
 
-/// A file of [[event]] tables and nothing else (`--events`). Throws InputError.
+/// The [[event]] tables of a file (`--events`); its [[fault]] tables are event_file.h's. Throws InputError.
 std::vector<physics::Event> read_event_file(const std::filesystem::path& file);
 
 /// One command, such as "move can to 10 cm, 0 cm". Throws InputError.

@@ -41,6 +41,11 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
         if (robot.linux_board) places.push_back({robot.name + ".uart", PlaceKind::Uart, {program, pic}});
         if (robot.pic.bluetooth)
             places.push_back({robot.name + ".bluetooth", PlaceKind::Uart, {pic, "bluetooth"}});
+        const std::string computer = robot.name + ".computer";
+        if (robot.pic.bluetooth && !robot.pic.bluetooth->computer.empty())
+            places.push_back({computer, PlaceKind::Uart, {computer, "bluetooth"}});
+        if (!robot.pic.uart1.empty())
+            places.push_back({robot.name + ".uart1", PlaceKind::Uart, {robot.name + ".uart1", pic}});
         if (!robot.pic.uart2.empty())
             places.push_back({robot.name + ".uart2", PlaceKind::Uart, {robot.name + ".uart2", pic}});
         std::vector<std::string> masters{pic};
@@ -55,6 +60,8 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
     for (const TamBoard& tam : scenario.tams)
         add_board(tam.name + ".avr", PlaceKind::Tam);
     for (const TamBoard& tam : scenario.tams) {
+        const std::string console = tam.name + ".console";
+        if (!tam.console.empty()) places.push_back({console, PlaceKind::Uart, {console, tam.name + ".avr"}});
         if (!tam.xbee.fitted) continue;
         places.push_back({tam.name + ".xbee", PlaceKind::Uart, {tam.name + ".avr", tam.name + ".xbee"}});
         places.push_back({tam.name + ".radio", PlaceKind::Radio, {tam.name + ".xbee", "ether"}});

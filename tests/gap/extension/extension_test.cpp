@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/plan.h"
-#include "scenarios/reader/scenario.h"
+#include "scenarios/reader/read_scenario.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
