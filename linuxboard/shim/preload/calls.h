@@ -73,6 +73,11 @@ int wait_for_lock(int fd, int command, void* lock);
 /// every millisecond as long as there are some.
 Wake park_shared(const void* key, WaitOptions options, bool shared);
 
+// machine_files.cpp
+/// A file of /proc whose contents would be the host's, and other in each run: a descriptor of what it holds
+/// on the board at this moment. -1 with errno unchanged: the path is none.
+int open_machine_file(const char* path);
+
 // process_calls.cpp
 void begin_process(Thread* main_thread);
 

@@ -1,11 +1,12 @@
 #include "linuxboard/shim/preload/process_paths.h"
 
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
-#include <dirent.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,14 +39,53 @@ ProcessPath::ProcessPath(const char* path) : path_(path) {
 
 using namespace puckloop::shim;
 
+extern "C" {
+ssize_t __readlink_chk(const char*, char*, size_t, size_t) noexcept;
+ssize_t __readlinkat_chk(int, const char*, char*, size_t, size_t) noexcept;
+}
+
+namespace {
+/// Where a link of /proc leads on the board: the program's own process, and the device behind a descriptor.
+/// False: `path` is no such link.
+bool read_board_link(const char* path, char (&target)[80]) {
+    if (!active() || !is_text(path) || path[0] != '/') return false;
+    if (std::strcmp(path, "/proc/self") == 0) {
+        std::snprintf(target, sizeof target, "%d", own().number);
+    } else if (std::strcmp(path, "/proc/thread-self") == 0) {
+        std::snprintf(target, sizeof target, "%d/task/%d", own().number, thread_number(self()->index));
+    } else {
+        const bool is_link = std::strncmp(path, "/dev/std", 8) == 0;  // to one of these
+        const OpenFile* file = is_link ? nullptr : open_file(named_descriptor(path));
+        if (file == nullptr) return false;
+        if (file->kind == OpenFile::Kind::Socket) {
+            std::snprintf(target, sizeof target, "socket:[%d]", file->handle);
+        } else {
+            std::snprintf(target, sizeof target, "%s", file->path);
+        }
+    }
+    return true;
+}
+}  // namespace
+
 SHIM_EXPORT ssize_t readlink(const char* path, char* text, size_t size) noexcept {
-    return REAL(readlink)(ProcessPath(path), text, size);
+    char target[80];
+    if (!read_board_link(path, target)) return REAL(readlink)(ProcessPath(path), text, size);
+    const std::size_t length = std::min(size, std::strlen(target));
+    return copy_to_program(text, target, length) ? static_cast<ssize_t>(length) : -1;
 }
 SHIM_EXPORT ssize_t readlinkat(int folder, const char* path, char* text, size_t size) noexcept {
+    char target[80];
+    if (read_board_link(path, target)) return readlink(path, text, size);
     return REAL(readlinkat)(folder, ProcessPath(path), text, size);
 }
-SHIM_EXPORT DIR* opendir(const char* path) {
-    return REAL(opendir)(ProcessPath(path));
+SHIM_EXPORT ssize_t __readlink_chk(const char* path, char* text, size_t size, size_t room) noexcept {
+    if (size > room) __builtin_trap();
+    return readlink(path, text, size);
+}
+SHIM_EXPORT ssize_t __readlinkat_chk(int folder, const char* path, char* text, size_t size,
+                                     size_t room) noexcept {
+    if (size > room) __builtin_trap();
+    return readlinkat(folder, path, text, size);
 }
 SHIM_EXPORT int chdir(const char* path) noexcept {
     return REAL(chdir)(ProcessPath(path));

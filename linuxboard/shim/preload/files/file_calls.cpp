@@ -91,8 +91,9 @@ int opened(const char* path, int fd) {
 
 /// A file that the board has and the host has not, or another one.
 int open_made_file(const char* path) {
-    const int uevent = open_video_uevent(path);
-    return uevent >= 0 ? uevent : open_network_file(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (const int machine = open_machine_file(path); machine >= 0) return machine;
+    return open_network_file(path);
 }
 
 /// The path does not depend on another folder than the working directory.
