@@ -2,11 +2,14 @@
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/program_memory.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
 
+#include <fcntl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,9 +22,32 @@
 namespace puckloop::shim {
 
 ProcessPath::ProcessPath(const char* path) : path_(path) {
+    if (active() && is_text(path)) translate(path);
+}
+
+ProcessPath::ProcessPath(int folder, const char* path) : path_(path) {
+    if (!active() || !is_text(path)) return;
+    if (folder < 0 || path[0] < '0' || path[0] > '9') {
+        translate(path);
+        return;
+    }
+    char link[40], target[8];
+    std::snprintf(link, sizeof link, "/proc/self/fd/%d", folder);
+    const int error = errno;
+    const long size = host_call(SYS_readlinkat, AT_FDCWD, reinterpret_cast<long>(link),
+                                reinterpret_cast<long>(target), sizeof target);
+    errno = error;
+    char whole[sizeof room_];
+    constexpr char kFolder[] = "/proc";
+    if (size != sizeof kFolder - 1 || std::memcmp(target, kFolder, sizeof kFolder - 1) != 0) return;
+    if (std::snprintf(whole, sizeof whole, "%s/%s", kFolder, path) < static_cast<int>(sizeof whole))
+        translate(whole);
+}
+
+void ProcessPath::translate(const char* path) {
     constexpr char kFolder[] = "/proc/";
     constexpr std::size_t kSize = sizeof kFolder - 1;
-    if (!active() || !is_text(path) || std::strncmp(path, kFolder, kSize) != 0) return;
+    if (std::strncmp(path, kFolder, kSize) != 0) return;
     const char* const number = path + kSize;
     const std::size_t digits = std::strspn(number, "0123456789");
     if (digits == 0 || (number[digits] != '\0' && number[digits] != '/')) return;
@@ -76,7 +102,7 @@ SHIM_EXPORT ssize_t readlink(const char* path, char* text, size_t size) noexcept
 SHIM_EXPORT ssize_t readlinkat(int folder, const char* path, char* text, size_t size) noexcept {
     char target[80];
     if (read_board_link(path, target)) return readlink(path, text, size);
-    return REAL(readlinkat)(folder, ProcessPath(path), text, size);
+    return REAL(readlinkat)(folder, ProcessPath(folder, path), text, size);
 }
 SHIM_EXPORT ssize_t __readlink_chk(const char* path, char* text, size_t size, size_t room) noexcept {
     if (size > room) __builtin_trap();

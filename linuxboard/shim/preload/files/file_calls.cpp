@@ -136,7 +136,7 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(openat)(folder, ProcessPath(path), flags, mode))
+    return device == kNoDevice ? opened(path, REAL(openat)(folder, ProcessPath(folder, path), flags, mode))
                                : open_device(device, flags);
 }
 
@@ -149,7 +149,7 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(openat64)(folder, ProcessPath(path), flags, mode))
+    return device == kNoDevice ? opened(path, REAL(openat64)(folder, ProcessPath(folder, path), flags, mode))
                                : open_device(device, flags);
 }
 
