@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/process_numbers.h"
 #include "linuxboard/shim/preload/process_paths.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/threads/scheduler.h"
@@ -53,15 +54,16 @@ DIR* begin_listing(DIR* stream) {
     errno = error;
     if (size <= 0) return stream;
     path[size] = '\0';
-    char descriptors[40];
-    std::snprintf(descriptors, sizeof descriptors, "/proc/%d/fd", own().host);
+    int process = 0, end = 0;
+    const bool descriptors = std::sscanf(path, "/proc/%d/fd%n", &process, &end) == 1 && end == size &&
+                             program_process(process) != 0;
     Listing begun;
     begun.stream = stream;
     if (std::strcmp(path, "/proc") == 0) {
         begun.kind = Listing::Kind::Processes;
     } else if (std::strcmp(path, "/dev") == 0) {
         begun.kind = Listing::Kind::Devices;
-    } else if (std::strcmp(path, descriptors) == 0) {
+    } else if (descriptors) {
         begun.kind = Listing::Kind::Descriptors;
     } else {
         return stream;
