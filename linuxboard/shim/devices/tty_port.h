@@ -44,6 +44,10 @@ class TtyPort {
     /// The last close: what is written still goes out, what is received is dropped from now on.
     void close();
     bool is_open() const { return opens_ > 0; }
+    /// The next close is the last one.
+    bool is_open_once() const { return opens_ == 1; }
+    /// What is written goes out by itself: nothing stops it.
+    bool sends() const { return output_.empty() || can_send(); }
     /// The line is gone until the next open: reads return 0, writes fail.
     void hang_up();
     bool hung_up() const { return hung_up_; }

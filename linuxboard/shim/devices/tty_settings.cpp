@@ -52,8 +52,9 @@ int baud_rate(speed_t speed) {
 }
 
 cosim::Time bit_period(const termios& settings, double ppm) {
-    const int rate = baud_rate(cfgetospeed(&settings));
-    if (rate == 0) return 0;
+    constexpr int kRateOfNone = 9600;  // serial_core.c: B0 drops DTR, the divisor is that of 9600
+    const int set = baud_rate(cfgetospeed(&settings));
+    const int rate = set == 0 ? kRateOfNone : set;
     return std::llround(static_cast<double>(cosim::kSecond) / (rate * (1.0 + ppm * 1e-6)));
 }
 

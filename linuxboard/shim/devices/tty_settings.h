@@ -15,7 +15,8 @@ termios initial_termios();
 /// Bits per second of the output speed; 0 for B0 (hang up) and for speeds that Linux does not know.
 int baud_rate(speed_t speed);
 
-/// Picoseconds a bit, `ppm` being the error of the board's clock (+ is fast). 0 for B0.
+/// Picoseconds a bit, `ppm` being the error of the board's clock (+ is fast). B0 is 9600, as in Linux's
+/// driver.
 cosim::Time bit_period(const termios& settings, double ppm);
 
 /// Data bits, parity and bit period a receiver with these settings uses.

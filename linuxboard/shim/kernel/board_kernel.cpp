@@ -20,6 +20,8 @@ namespace {
 /// VTIME counts tenths of a second.
 constexpr Time kVtimeUnit = 100 * cosim::kMillisecond;
 
+constexpr Time kClosingWait = 30 * cosim::kSecond;
+
 constexpr int kInputEvents = POLLIN | POLLRDNORM;
 
 template <typename T>
@@ -190,6 +192,7 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
     if (is_socket_call(request.op)) return attempt_socket(thread, waiting, now);
     switch (request.op) {
     case Op::Close:
+        if (drains_first(waiting, now)) return false;
         release(request.handle, now);
         return done(0);
     case Op::Read:
@@ -246,6 +249,14 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
     default:
         return done(-1, ENOSYS);
     }
+}
+
+/// The serial core's: the last close of a port waits for what was written, and gives it up after this time.
+/// Output that is stopped it gives up at once (deviation: Linux does after an ioctl, and waits after XOFF).
+bool BoardKernel::drains_first(const Waiting& waiting, Time now) const {
+    const File& file = files_[static_cast<std::size_t>(waiting.request.handle)];
+    return file.kind == DeviceKind::Tty && file.references == 1 && tty_.is_open_once() && !tty_.hung_up() &&
+           tty_.sends() && !tty_.drained(now) && now < waiting.since + kClosingWait;
 }
 
 bool BoardKernel::attempt_read(std::uint32_t thread, Waiting& waiting, Time now) {
@@ -395,6 +406,8 @@ Time BoardKernel::wake_time(const Waiting& waiting) const {
     case Op::SetTermios:
     case Op::Drain:
         return tty_.drain_time();
+    case Op::Close:
+        return std::min(tty_.drain_time(), waiting.since + kClosingWait);
     default:
         return kNever;
     }
@@ -487,19 +500,24 @@ void BoardKernel::hang_up(Time now) {
     attempt_all(now);
 }
 
-void BoardKernel::forget(std::uint32_t slot) {
+void BoardKernel::forget(std::uint32_t slot, Time now) {
     for (auto it = waiting_.begin(); it != waiting_.end();) {
         if (slot_of(it->first) != slot) {
             ++it;
             continue;
         }
         adapter_.abandon(it->first);
+        if (it->second.request.op == Op::Close) release(it->second.request.handle, now);
         it = waiting_.erase(it);
     }
     for (auto* pieces : {&begun_, &rest_})
         std::erase_if(*pieces, [slot](const auto& one) { return slot_of(one.first) == slot; });
     std::erase_if(finished_,
                   [slot](const FinishedCall& call) { return slot_of(call.header.thread) == slot; });
+}
+
+bool BoardKernel::is_serial_port(int handle) const {
+    return files_[static_cast<std::size_t>(handle)].kind == DeviceKind::Tty;
 }
 
 void BoardKernel::share(int handle) {

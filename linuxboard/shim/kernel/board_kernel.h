@@ -84,8 +84,9 @@ class BoardKernel {
     void was_read(std::size_t bytes) { tty_.read(bytes); }
     void was_written(std::string_view data, cosim::Time now) { tty_.write(data, now); }
     /// A process is gone, or became another program: the calls of its threads are forgotten.
-    void forget(std::uint32_t slot);
+    void forget(std::uint32_t slot, cosim::Time now);
     /// One more process has the open file `handle`.
+    bool is_serial_port(int handle) const;
     void share(int handle);
     /// One process less has it; the last one closes the device.
     void release(int handle, cosim::Time now);
@@ -128,6 +129,7 @@ class BoardKernel {
 
     /// True if the call ended.
     bool attempt(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    bool drains_first(const Waiting& waiting, cosim::Time now) const;
     bool attempt_read(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     bool attempt_write(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     bool attempt_poll(std::uint32_t thread, Waiting& waiting, cosim::Time now);

@@ -113,6 +113,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
         cosim::Time answered = 0;  ///< when it was last
         bool end_signalled = false;
         bool announced_exit = false;
+        bool leaving = false;  ///< it is dead; its last close of the serial port waits for what was written
         cosim::Time exit_time = 0;
     };
 
@@ -166,6 +167,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void send_signal(std::uint32_t slot, int signal, cosim::Time now, const wire::SignalOrigin& origin = {});
     void signal_all(int signal, cosim::Time now);
     void changed(const Client* by, cosim::Time now);
+    bool leaves_slowly(Client& client, cosim::Time now);
     void client_ended(Client& client, cosim::Time now);
     void kill_all(cosim::Time now);
 
@@ -177,6 +179,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     std::string with_first_killed(std::string how) const;
     void ended_winding_up(cosim::Time now);
     void out_of_grace(cosim::Time now);
+    void end_leaving(cosim::Time now);
     void send_end_signal(cosim::Time now);
     void signalled_ended(cosim::Time now);
     bool used_a_device() const;

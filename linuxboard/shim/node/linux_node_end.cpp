@@ -120,8 +120,21 @@ void LinuxNode::note_devices() {
         warn(fmt::format("{} never opened {}", spec_.program, spec_.tty));
 }
 
+/// With the run nothing waits for the serial port any more.
+void LinuxNode::end_leaving(Time now) {
+    for (bool found = true; std::exchange(found, false);) {
+        for (const auto& client : clients_) {
+            if (!client->leaving) continue;
+            client_ended(*client, now);
+            found = true;
+            break;
+        }
+    }
+}
+
 void LinuxNode::wind_up(Time now, int signal) {
     notice_first_killed(now);
+    end_leaving(now);
     start_at_ = kNever;
     next_restart_ = spec_.restarts.size();
     end_signal_ = signal != 0 ? signal : spec_.end_signal;
@@ -180,6 +193,7 @@ void LinuxNode::out_of_grace(Time now) {
 std::string LinuxNode::finish() {
     if (starts_ == 0) end_ = "was not started: the run ended before its time";
     notice_first_killed(until_);
+    end_leaving(until_);
     if (!clients_.empty()) {
         note_devices();
         end_ = with_first_killed("was ended with the run");

@@ -46,6 +46,7 @@ Time LinuxNode::due(const Client& client) {
         return client.request.now;
     case Client::State::Waiting:
         if (!client.finished.empty()) return client.request.now;
+        if (client.leaving) return kNever;
         return std::min({client.request.wait_until, client.signals_at, client.woken_at});
     case Client::State::Starting:
     case Client::State::Running:
@@ -70,7 +71,12 @@ bool LinuxNode::wake_ready(Time now) {
         return client->state == Client::State::Waiting && goes_on(*client) <= now;
     });
     if (ready == clients_.end()) return false;
-    answer(**ready, now);
+    if ((*ready)->leaving) {
+        must_be_final();
+        client_ended(**ready, now);
+    } else {
+        answer(**ready, now);
+    }
     return true;
 }
 
@@ -124,7 +130,7 @@ bool LinuxNode::handle_family(Client& client) {
 
 void LinuxNode::hello(Client& client) {
     // Another program in the same process: its other threads and what they waited for are gone.
-    kernel_.forget(client.slot);
+    kernel_.forget(client.slot, client.request.now);
     client.finished.clear();
     finish(client, 0, 0, std::exchange(client.inherited, {}));
 }
@@ -221,15 +227,40 @@ void LinuxNode::changed(const Client* by, Time now) {
             client->woken_at = std::min(client->woken_at, now);
 }
 
+/// A process that is gone closes its files; the last close of the serial port takes until the bytes are out,
+/// and until then the others see the process. False if there is nothing to wait for.
+bool LinuxNode::leaves_slowly(Client& client, Time now) {
+    if (std::exchange(client.leaving, true)) return false;
+    client.process->kill();
+    kernel_.forget(client.slot, std::max(now, begun_));
+    int port = -1;
+    for (const int handle : std::exchange(client.handles, {})) {
+        const int closed = kernel_.is_serial_port(handle) ? std::exchange(port, handle) : handle;
+        if (closed >= 0) kernel_.release(closed, std::max(now, begun_));
+    }
+    if (port < 0) return false;
+    client.finished.clear();
+    client.request = {};
+    client.request.op = Op::Close;
+    client.request.handle = port;
+    client.request.thread = thread_of(client.slot, 0);
+    client.request.now = std::max(now, begun_);
+    client.request.wait_until = kNever;
+    client.state = Client::State::Waiting;
+    kernel_.call(client.request, {});
+    deal_out();
+    if (!client.finished.empty()) return false;
+    changed(&client, now);
+    return true;
+}
+
 void LinuxNode::client_ended(Client& client, Time now) {
     // What the program's memory states may be anything.
     now = std::clamp(now, client.answered, std::max(client.answered, until_));
+    if (leaves_slowly(client, now)) return;
     const std::uint32_t slot = client.slot;
     const bool signalled = client.end_signalled;
-    client.process->kill();
-    kernel_.forget(slot);
-    for (const int handle : client.handles)
-        kernel_.release(handle, std::max(now, begun_));
+    kernel_.forget(slot, std::max(now, begun_));
     ProcessEntry& ended = entry(slot);
     ended.status = client.process->wait_status();
     ended.state = ProcessEntry::Ended;

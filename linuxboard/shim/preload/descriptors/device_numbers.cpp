@@ -1,5 +1,7 @@
 #include "linuxboard/shim/preload/descriptors/device_numbers.h"
 
+#include "linuxboard/shim/preload/host/link.h"
+
 #include <cstdlib>
 #include <cstring>
 
@@ -20,9 +22,25 @@ constexpr Names kNames[] = {
 };
 }  // namespace
 
-dev_t device_number(const char* path) {
+namespace {
+const char* last_part(const char* path) {
     const char* slash = std::strrchr(path, '/');
-    const char* name = slash != nullptr ? slash + 1 : path;
+    return slash != nullptr ? slash + 1 : path;
+}
+
+/// A name of the bus without a number has that of the first name.
+const char* numbered_name(const char* name) {
+    constexpr char kBus[] = "i2c-";
+    constexpr std::size_t kSize = sizeof kBus - 1;
+    if (std::strncmp(name, kBus, kSize) != 0 || (name[kSize] >= '0' && name[kSize] <= '9')) return name;
+    for (const wire::DeviceName& device : page().devices)
+        if (device.kind == wire::DeviceKind::I2c) return last_part(device.path);
+    return name;
+}
+}  // namespace
+
+dev_t device_number(const char* path) {
+    const char* name = numbered_name(last_part(path));
     for (const Names& known : kNames) {
         const std::size_t size = std::strlen(known.prefix);
         if (std::strncmp(name, known.prefix, size) != 0) continue;

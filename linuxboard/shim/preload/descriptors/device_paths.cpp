@@ -17,6 +17,23 @@
 
 namespace puckloop::shim {
 
+int named_descriptor(const char* path) {
+    if (std::strcmp(path, "/dev/stdin") == 0) return STDIN_FILENO;
+    if (std::strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
+    if (std::strcmp(path, "/dev/stderr") == 0) return STDERR_FILENO;
+    char own_folder[40];
+    std::snprintf(own_folder, sizeof own_folder, "/proc/%d/fd/", own().number);
+    const char* const folders[] = {"/dev/fd/", "/proc/self/fd/", "/proc/thread-self/fd/", own_folder};
+    for (const char* folder : folders) {
+        const std::size_t size = std::strlen(folder);
+        if (std::strncmp(path, folder, size) != 0 || path[size] < '0' || path[size] > '9') continue;
+        char* end = nullptr;
+        const long fd = std::strtol(path + size, &end, 10);
+        return *end == '\0' && fd < INT_MAX ? static_cast<int>(fd) : -1;
+    }
+    return -1;
+}
+
 namespace {
 constexpr const char* kRandomPaths[] = {"/dev/urandom", "/dev/random"};
 constexpr int kMostLinks = 8;
@@ -50,21 +67,6 @@ bool ends_like_a_device(const char* path) {
         if (device.kind != wire::DeviceKind::None && std::strcmp(last, last_part(device.path)) == 0)
             return true;
     return false;
-}
-
-/// The descriptor of this process that the path names, or -1.
-int named_descriptor(const char* path) {
-    if (std::strcmp(path, "/dev/stdin") == 0) return STDIN_FILENO;
-    if (std::strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
-    if (std::strcmp(path, "/dev/stderr") == 0) return STDERR_FILENO;
-    for (const char* folder : {"/dev/fd/", "/proc/self/fd/", "/proc/thread-self/fd/"}) {
-        const std::size_t size = std::strlen(folder);
-        if (std::strncmp(path, folder, size) != 0 || path[size] < '0' || path[size] > '9') continue;
-        char* end = nullptr;
-        const long fd = std::strtol(path + size, &end, 10);
-        return *end == '\0' && fd < INT_MAX ? static_cast<int>(fd) : -1;
-    }
-    return -1;
 }
 
 /// `path` from `folder` on, without ".", ".." and double slashes; false if it has no room.

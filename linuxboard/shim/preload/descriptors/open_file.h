@@ -34,6 +34,8 @@ inline constexpr int kRandomDevice = -2;
 /// A device of the node, named by a process that is outside of simulated time.
 inline constexpr int kForbiddenDevice = -3;
 int device_of(const char* path);
+/// The descriptor of this process that a path in /dev/fd or /proc names, or -1.
+int named_descriptor(const char* path);
 /// The same for a path that begins at the open folder `folder`, as openat() takes it; without `follow` a
 /// symbolic link to a device is none.
 int device_at(int folder, const char* path, bool follow = true);

@@ -9,6 +9,7 @@
 #include "linuxboard/shim/preload/host/process_numbers.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
+#include "linuxboard/shim/preload/machine/machine_files.h"
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/scheduler/board_clock.h"
 #include "linuxboard/shim/preload/scheduler/outside_news.h"
@@ -95,8 +96,9 @@ int opened(const char* path, int fd) {
 
 /// A file that the board has and the host has not, or another one.
 int open_made_file(const char* path) {
-    const int uevent = open_video_uevent(path);
-    return uevent >= 0 ? uevent : open_network_file(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (const int machine = open_machine_file(path); machine >= 0) return machine;
+    return open_network_file(path);
 }
 
 /// The path does not depend on another folder than the working directory.
@@ -139,7 +141,7 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(openat)(folder, ProcessPath(path), flags, mode))
+    return device == kNoDevice ? opened(path, REAL(openat)(folder, ProcessPath(folder, path), flags, mode))
                                : open_device(device, flags);
 }
 
@@ -152,7 +154,7 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     if (const int made = open_made_file(path); made >= 0) return made;
     if (device == kNoDevice && is_absolute_from(folder, path) && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
-    return device == kNoDevice ? opened(path, REAL(openat64)(folder, ProcessPath(path), flags, mode))
+    return device == kNoDevice ? opened(path, REAL(openat64)(folder, ProcessPath(folder, path), flags, mode))
                                : open_device(device, flags);
 }
 

@@ -126,16 +126,16 @@ STAT_OF_DESCRIPTOR(stat64, Stat64)
 SHIM_EXPORT int fstatat(int folder, const char* path, struct stat* status, int flags) noexcept {
     const char* name = device_name(folder, path, flags);
     if (name != nullptr) return shown(name, status, REAL(stat)(kStandIn, status));
-    return REAL(fstatat)(folder, ProcessPath(path), status, flags);
+    return REAL(fstatat)(folder, ProcessPath(folder, path), status, flags);
 }
 SHIM_EXPORT int fstatat64(int folder, const char* path, struct stat64* status, int flags) noexcept {
     const char* name = device_name(folder, path, flags);
     if (name != nullptr) return shown(name, status, REAL(stat64)(kStandIn, status));
-    return REAL(fstatat64)(folder, ProcessPath(path), status, flags);
+    return REAL(fstatat64)(folder, ProcessPath(folder, path), status, flags);
 }
 SHIM_EXPORT int statx(int folder, const char* path, int flags, unsigned mask, struct statx* status) noexcept {
     const char* name = device_name(folder, path, flags);
-    if (name == nullptr) return REAL(statx)(folder, ProcessPath(path), flags, mask, status);
+    if (name == nullptr) return REAL(statx)(folder, ProcessPath(folder, path), flags, mask, status);
     const int result = REAL(statx)(AT_FDCWD, kStandIn, 0, mask, status);
     if (result != 0) return result;
     const dev_t number = device_number(name);

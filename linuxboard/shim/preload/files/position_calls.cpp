@@ -20,6 +20,8 @@ using namespace puckloop::shim;
 extern "C" {
 ssize_t __pread_chk(int, void*, size_t, off_t, size_t);
 ssize_t __pread64_chk(int, void*, size_t, off64_t, size_t);
+ssize_t preadv64v2(int, const iovec*, int, off64_t, int);
+ssize_t pwritev64v2(int, const iovec*, int, off64_t, int);
 }
 
 namespace {
@@ -124,6 +126,13 @@ SHIM_EXPORT ssize_t pwritev2(int fd, const iovec* parts, int count, off_t offset
     if (!is_device(fd)) return REAL(pwritev2)(fd, parts, count, offset, flags);
     if (!takes_flags(*open_file(fd), flags)) return fail(EOPNOTSUPP);
     return offset == -1 ? writev(fd, parts, count) : pwritev(fd, parts, count, offset);
+}
+
+SHIM_EXPORT ssize_t preadv64v2(int fd, const iovec* parts, int count, off64_t offset, int flags) {
+    return preadv2(fd, parts, count, offset, flags);
+}
+SHIM_EXPORT ssize_t pwritev64v2(int fd, const iovec* parts, int count, off64_t offset, int flags) {
+    return pwritev2(fd, parts, count, offset, flags);
 }
 
 SHIM_EXPORT ssize_t sendfile(int to, int from, off_t* offset, size_t size) noexcept {

@@ -208,6 +208,22 @@ SHIM_EXPORT int fexecve(int fd, char* const* arguments, char* const* environment
     return run_program(path, arguments, environment);
 }
 
+SHIM_EXPORT int execveat(int folder, const char* path, char* const* arguments, char* const* environment,
+                         int flags) noexcept {
+    if (!active()) return REAL(execveat)(folder, path, arguments, environment, flags);
+    if (!is_text(path)) {
+        errno = EFAULT;
+        return -1;
+    }
+    if (*path == '\0' && (flags & AT_EMPTY_PATH) != 0) return fexecve(folder, arguments, environment);
+    if (*path == '/' || folder == AT_FDCWD) return run_program(path, arguments, environment);
+    char beside[512];
+    const int size = std::snprintf(beside, sizeof beside, "/proc/self/fd/%d/%s", folder, path);
+    if (size < static_cast<int>(sizeof beside)) return run_program(beside, arguments, environment);
+    errno = ENAMETOOLONG;
+    return -1;
+}
+
 SHIM_EXPORT int execl(const char* path, const char* first, ...) noexcept {
     std::va_list list;
     va_start(list, first);

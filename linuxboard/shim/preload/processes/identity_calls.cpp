@@ -50,8 +50,13 @@ bool send_to(int number, Choice chosen) {
             device_call(request);
         }
     }
-    if (self_too && number != 0 && !stops_by_default(number))
-        REAL(kill)(static_cast<pid_t>(host_call(SYS_getpid)), number);
+    if (self_too && number != 0 && !stops_by_default(number)) {
+        if (thread_count() > 1) {
+            signal_process(number);
+        } else {
+            REAL(kill)(static_cast<pid_t>(host_call(SYS_getpid)), number);
+        }
+    }
     return found;
 }
 }  // namespace
@@ -86,6 +91,23 @@ int signal_thread(pid_t process, pid_t thread, int number) {
     return -1;
 }
 }  // namespace puckloop::shim
+
+/// As the C library's: of a thread that has ended but was not joined it is a success without effect.
+SHIM_EXPORT int pthread_kill(pthread_t handle, int number) noexcept {
+    Thread* thread = active() ? find_thread(handle) : nullptr;
+    if (thread == nullptr || thread == self() || number <= 0 || number >= NSIG)
+        return REAL(pthread_kill)(handle, number);
+    charge(page().charges.yield);
+    if (number == SIGKILL) return kill(own().number, number) == 0 ? 0 : errno;
+    if (thread->state != Thread::State::Finished && !stops_by_default(number)) direct_signal(thread, number);
+    return 0;
+}
+SHIM_EXPORT int pthread_sigqueue(pthread_t handle, int number, const sigval value) noexcept {
+    const Thread* thread = active() ? find_thread(handle) : nullptr;
+    if (thread == nullptr || thread == self()) return REAL(pthread_sigqueue)(handle, number, value);
+    if (number != 0) note("the value of pthread_sigqueue() does not reach another thread");
+    return pthread_kill(handle, number);
+}
 
 SHIM_EXPORT pid_t gettid() noexcept {
     return active() ? thread_number(self()->index) : REAL(gettid)();

@@ -4,6 +4,7 @@
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/scheduler/ahead.h"
+#include "linuxboard/shim/preload/scheduler/outside_news.h"
 #include "linuxboard/shim/preload/scheduler/signal_origins.h"
 #include "linuxboard/shim/preload/scheduler/timers.h"
 
@@ -170,12 +171,41 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     expire_deadlines();
 }
 
-/// The main thread takes signals, as the kernel prefers; the first that is left after its end.
-Thread* signal_taker() {
+/// Of the calling thread, as the host has it; bit n: signal n.
+std::uint64_t own_mask() {
+    sigset_t set;
+    sigemptyset(&set);
+    pthread_sigmask(SIG_BLOCK, nullptr, &set);
+    std::uint64_t mask = 0;
+    for (int number = 1; number < NSIG; ++number)
+        if (sigismember(&set, number) == 1) mask |= std::uint64_t{1} << number;
+    return mask;
+}
+
+/// The main thread takes signals, as the kernel prefers, or the first after it that is left and does not
+/// block this one; nullptr if all do.
+Thread* signal_taker(int number) {
     for (std::size_t i = 0; i < thread_total; ++i) {
-        if (threads[i] != nullptr && threads[i]->state != Thread::State::Finished) return threads[i];
+        if (threads[i] == nullptr || threads[i]->state == Thread::State::Finished) continue;
+        const std::uint64_t blocked = threads[i] == current ? own_mask() : threads[i]->blocked;
+        if ((blocked >> number & 1) == 0) return threads[i];
     }
     return nullptr;
+}
+
+/// Those that the calling thread has to take.
+std::uint64_t due_signals() {
+    std::uint64_t due = current->directed;
+    for (std::uint64_t left = pending_signals; left != 0; left &= left - 1) {
+        const int number = std::countr_zero(left);
+        const Thread* taker = signal_taker(number);
+        if (taker == nullptr || taker == current) due |= std::uint64_t{1} << number;
+    }
+    return due;
+}
+
+bool signals_due() {
+    return (pending_signals | current->directed) != 0 && due_signals() != 0;
 }
 
 /// Time passes until `time`, at which a thread goes on, if the node has said that nothing happens before. In
@@ -217,8 +247,25 @@ void withdraw(Thread& thread) {
     transact(request, nullptr, 0);
 }
 
+/// A signal ends what the thread waits in, if signals do.
+void interrupt(Thread& thread) {
+    if (!thread.interruptible) return;
+    // Its call has ended already: what it received is not lost, and the handler runs before it returns.
+    const bool has_ended = thread.state == Thread::State::Ready && thread.wake == Wake::Device;
+    if (has_ended && page().networked != 0) return;
+    if (thread.state == Thread::State::Device) withdraw(thread);
+    if (thread.state == Thread::State::Parked || thread.state == Thread::State::Ready)
+        make_ready(thread, clock_now, Wake::Signal);
+}
+
+bool has_directed() {
+    for (std::size_t i = 0; i < thread_total; ++i)
+        if (threads[i] != nullptr && threads[i]->directed != 0) return true;
+    return false;
+}
+
 void route_signal() {
-    if (pending_signals == 0) return;
+    if (pending_signals == 0 && !has_directed()) return;
     for (std::size_t i = 0; i < thread_total; ++i) {
         Thread* thread = threads[i];
         if (thread == nullptr || thread->awaited_signals == nullptr) continue;
@@ -234,15 +281,22 @@ void route_signal() {
             break;
         }
     }
-    if (pending_signals == 0) return;
-    Thread* taker = signal_taker();
-    if (taker == nullptr || !taker->interruptible) return;
-    // Its call has ended already: what it received is not lost, and the handler runs before it returns.
-    const bool has_ended = taker->state == Thread::State::Ready && taker->wake == Wake::Device;
-    if (has_ended && page().networked != 0) return;
-    if (taker->state == Thread::State::Device) withdraw(*taker);
-    if (taker->state == Thread::State::Parked || taker->state == Thread::State::Ready)
-        make_ready(*taker, clock_now, Wake::Signal);
+    for (std::uint64_t left = pending_signals; left != 0; left &= left - 1) {
+        const int number = std::countr_zero(left);
+        if (Thread* taker = signal_taker(number)) {
+            interrupt(*taker);
+            continue;
+        }
+        // All block it: it is kept by the host, for sigpending(), sigwait() and the one that unblocks it.
+        const std::uint64_t bit = std::uint64_t{1} << number;
+        pending_signals &= ~bit;
+        from_node &= ~bit;
+        host_call(SYS_kill, host_call(SYS_getpid), number);
+        external_changed();  // a signalfd() is readable
+    }
+    for (std::size_t i = 0; i < thread_total; ++i)
+        if (threads[i] != nullptr && (threads[i]->directed & ~threads[i]->blocked) != 0)
+            interrupt(*threads[i]);
 }
 
 void hand_over(Thread* next) {
@@ -259,6 +313,7 @@ void await_token(Thread* thread) {
 
 /// The calling thread has just left the state Running. Returns when it runs again.
 void schedule(Thread* me) {
+    if (thread_total > 1 && me->state != Thread::State::Finished) me->blocked = own_mask();
     while (true) {
         expire_deadlines();
         route_signal();
@@ -286,21 +341,26 @@ void schedule(Thread* me) {
 /// restarted: none of them interrupts.
 bool take_signals() {
     bool restarts = true;
-    while (pending_signals != 0) {
-        const int number = std::countr_zero(pending_signals);
-        pending_signals &= pending_signals - 1;
+    for (std::uint64_t due = due_signals(); due != 0; due = due_signals()) {
+        const int number = std::countr_zero(due);
+        const std::uint64_t bit = std::uint64_t{1} << number;
+        const bool directed = (current->directed & bit) != 0;
+        (directed ? current->directed : pending_signals) &= ~bit;
         struct sigaction action {};
         sigaction(number, nullptr, &action);
         const bool ignored = action.sa_handler == SIG_IGN;
         sigset_t blocked;
         pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
         publish();
-        const std::uint64_t bit = std::uint64_t{1} << number;
-        if ((from_node & bit) != 0) expect_origin(number);
-        from_node &= ~bit;
+        if (!directed && (from_node & bit) != 0) expect_origin(number);
+        if (!directed) from_node &= ~bit;
         if (sigismember(&blocked, number) == 1) {
-            // Some other thread may want it; its handler then runs beside the one that runs.
-            host_call(SYS_kill, host_call(SYS_getpid), number);
+            // Kept by the host until it is unblocked or waited for.
+            if (directed) {
+                host_call(SYS_tgkill, host_call(SYS_getpid), host_call(SYS_gettid), number);
+            } else {
+                host_call(SYS_kill, host_call(SYS_getpid), number);
+            }
             continue;
         }
         raise(number);
@@ -364,7 +424,7 @@ void charge(Time cost) {
     } else {
         expire_deadlines();
     }
-    while (pending_signals != 0 && signal_taker() == me)
+    while (signals_due())
         take_signals();
     const Thread* other = first_ready();
     if (other != nullptr && clock_now - other->ready_since >= kQuantum) {
@@ -412,7 +472,7 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
     Thread* me = current;
     while (true) {
         if (interruptible && me->cancel_asked) pthread_testcancel();
-        if (pending_signals != 0 && signal_taker() == me && !take_signals() && interruptible) {
+        if (signals_due() && !take_signals() && interruptible) {
             errno = EINTR;
             return -1;
         }
@@ -444,7 +504,7 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
             errno = EINTR;
             return -1;
         }
-        while (pending_signals != 0 && signal_taker() == me)
+        while (signals_due())
             take_signals();
         if (result < 0) errno = error;
         return result;
@@ -478,6 +538,7 @@ Thread* new_thread() {
     auto* thread = new Thread;
     thread->index = static_cast<std::uint32_t>(thread_total);
     thread->ready_since = clock_now;
+    if (current != nullptr) thread->blocked = own_mask();  // it inherits the mask
     threads[thread_total++] = thread;
     return thread;
 }
@@ -517,6 +578,30 @@ void cancel_thread(Thread* thread) {
         make_ready(*thread, clock_now, Wake::Cancelled);
 }
 
+void direct_signal(Thread* thread, int number) {
+    const std::uint64_t bit = std::uint64_t{1} << number;
+    if (ignored_signals(bit) != 0) return;
+    if (thread->awaited_signals != nullptr && sigismember(thread->awaited_signals, number) == 1) {
+        own().origins[number] = {own().number, 0, 0};
+        thread->taken_signal = number;
+        thread->awaited_signals = nullptr;
+        return make_ready(*thread, clock_now, Wake::Signal);
+    }
+    thread->directed |= bit;
+    if ((thread->blocked & bit) == 0) interrupt(*thread);
+}
+
+void signal_process(int number) {
+    const std::uint64_t bit = std::uint64_t{1} << number;
+    if (ignored_signals(bit) != 0) return;
+    own().origins[number] = {own().number, 0, 0};
+    pending_signals |= bit;
+    from_node |= bit;
+    route_signal();
+    while (signals_due())
+        take_signals();
+}
+
 void announce_exit(int status) {
     if (!active()) return;
     wire::Request request;
@@ -541,6 +626,7 @@ void only_this_thread() {
     me->index = 0;
     me->state = Thread::State::Running;
     me->awaited_signals = nullptr;
+    me->directed = 0;
     me->computed = 0;
     pending_signals = 0;
     in_node_call = false;

@@ -64,6 +64,8 @@ struct Thread {
 
     const sigset_t* awaited_signals = nullptr;  ///< sigwait
     int taken_signal = 0;
+    std::uint64_t directed = 0;  ///< signals for this thread alone; bit n: signal n
+    std::uint64_t blocked = 0;   ///< likewise: its mask when it last gave way
 };
 
 /// The library conducts this process and the calling thread. False before the start, in
@@ -116,6 +118,12 @@ std::size_t thread_count();
 /// First thing that a new thread does: waits for its turn.
 void enter_thread(Thread* thread);
 void cancel_thread(Thread* thread);
+/// A signal for `thread` alone, which is not the calling one: its handler runs on it when it goes on, and a
+/// call that signals interrupt ends now.
+void direct_signal(Thread* thread, int number);
+/// A signal for this process from itself: the first thread that does not block it takes it; if that is the
+/// calling one, before this returns.
+void signal_process(int number);
 
 void announce_exit(int status);
 /// In a forked child: nothing is conducted any more.

@@ -145,11 +145,21 @@ SHIM_EXPORT int settimeofday(const timeval* time, const struct timezone* zone) n
 SHIM_EXPORT int adjtime(const timeval* by, timeval* before) noexcept {
     return active() ? refuse_to_set() : REAL(adjtime)(by, before);
 }
-SHIM_EXPORT int adjtimex(timex* settings) noexcept {
-    return active() ? refuse_to_set() : REAL(adjtimex)(settings);
+/// What only asks is answered as of a clock that nothing disciplines.
+SHIM_EXPORT int adjtimex(timex* theirs) noexcept {
+    if (!active()) return REAL(adjtimex)(theirs);
+    timex settings{};
+    if (!get_from_program(settings, theirs)) return -1;
+    if (settings.modes != 0) return refuse_to_set();
+    const timespec wall = timespec_of_nanoseconds(clock_nanoseconds(CLOCK_REALTIME));
+    settings = {};
+    settings.status = STA_UNSYNC;
+    settings.time = {wall.tv_sec, wall.tv_nsec / 1000};
+    return put_to_program(theirs, settings) ? TIME_ERROR : -1;
 }
 SHIM_EXPORT int clock_adjtime(clockid_t clock, timex* settings) noexcept {
-    return active() ? refuse_to_set() : REAL(clock_adjtime)(clock, settings);
+    if (!active()) return REAL(clock_adjtime)(clock, settings);
+    return clock == CLOCK_REALTIME ? adjtimex(settings) : fail(is_clock(clock) ? EOPNOTSUPP : EINVAL);
 }
 
 SHIM_EXPORT int gettimeofday(timeval* time, void* zone) noexcept {

@@ -56,21 +56,28 @@ int set_timer(Timer* timer, bool absolute, const itimerspec* theirs, itimerspec*
     return 0;
 }
 
-/// Waits for one of `set`; the signal's number, or 0 at the deadline.
+/// Waits for one of `set`; the signal's number, 0 at the deadline, -1 if the handler of another one ran.
 int await_signal(const sigset_t* set, Time deadline) {
     mark_call("sigwait");
     pthread_testcancel();
     charge(page().charges.sync);
+    // One that came while it was blocked is kept by the host.
+    const timespec at_once{};
+    if (const int kept = REAL(sigtimedwait)(set, nullptr, &at_once); kept > 0) {
+        own().origins[kept] = {own().number, 0, 0};
+        return kept;
+    }
     Thread* me = self();
     me->awaited_signals = set;
     me->taken_signal = 0;
     static const char key = 0;
     WaitOptions options;
     options.deadline = deadline;
+    options.interruptible = true;
     options.cancellable = true;
-    park(&key, options);
+    const Wake reason = park(&key, options);
     me->awaited_signals = nullptr;
-    return me->taken_signal;
+    return me->taken_signal == 0 && reason == Wake::Signal ? -1 : me->taken_signal;
 }
 }  // namespace
 
@@ -250,17 +257,51 @@ SHIM_EXPORT int sigsuspend(const sigset_t* mask) {
     return -1;
 }
 
+extern "C" {
+int __xpg_sigpause(int);
+int __sigpause(int, int);
+}
+
+namespace {
+/// Until a signal, with `set` blocked.
+int pause_with(const sigset_t& set) {
+    return sigsuspend(&set);
+}
+}  // namespace
+
+/// That of BSD: the mask's bits are the signals from 1 on.
+#undef sigpause
+extern "C" __attribute__((visibility("default"))) int puckloop_bsd_sigpause(int mask) asm("sigpause");
+int puckloop_bsd_sigpause(int mask) {
+    sigset_t set;
+    sigemptyset(&set);
+    for (int number = 1; number <= 32; ++number)
+        if ((static_cast<unsigned>(mask) >> (number - 1) & 1) != 0) sigaddset(&set, number);
+    return pause_with(set);
+}
+/// That of System V: this signal is let through.
+SHIM_EXPORT int __xpg_sigpause(int number) {
+    sigset_t set;
+    pthread_sigmask(SIG_BLOCK, nullptr, &set);
+    if (sigdelset(&set, number) != 0) return -1;
+    return pause_with(set);
+}
+SHIM_EXPORT int __sigpause(int mask_or_number, int is_number) {
+    return is_number != 0 ? __xpg_sigpause(mask_or_number) : puckloop_bsd_sigpause(mask_or_number);
+}
+
 SHIM_EXPORT int sigwait(const sigset_t* set, int* number) {
     if (!active()) return REAL(sigwait)(set, number);
-    *number = await_signal(set, kNever);
+    while ((*number = await_signal(set, kNever)) <= 0) {
+    }
     return 0;
 }
 
 SHIM_EXPORT int sigtimedwait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
     if (!active()) return REAL(sigtimedwait)(set, info, timeout);
     const int number = await_signal(set, timeout == nullptr ? kNever : time_after(from_timespec(*timeout)));
-    if (number == 0) {
-        errno = EAGAIN;
+    if (number <= 0) {
+        errno = number == 0 ? EAGAIN : EINTR;
         return -1;
     }
     if (info != nullptr) {
