@@ -100,6 +100,7 @@ const std::vector<std::string> kFolders = {
     "linuxboard/shim/preload/time",
     "linuxboard/shim/preload/waiting",
     "linuxboard/shim/preload/network",
+    "linuxboard/shim/preload/machine",
     "linuxboard/shim/preload/files",
     "linuxboard/shim/preload/threads",
     "linuxboard/shim/preload/processes",
