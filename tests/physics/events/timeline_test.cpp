@@ -77,8 +77,8 @@ TEST_CASE("what happens does not depend on how time was granted") {
     }
     EventPlan plan;
     plan.events = busy_plan();
-    const auto carried = std::make_unique<WorldNode>(from_json(to_json(room())),
-                                                     plan_from_json(to_json(plan)), nullptr, false);
+    const auto carried =
+        std::make_unique<WorldNode>(from_json(to_json(room())), plan_from_json(to_json(plan)), nullptr);
     CHECK(run_node(*carried, inputs, kDuration, 13 * kMillisecond) == all);
     const auto report = nlohmann::json::parse(first->finish());
     for (const auto& event : report.at("events"))
