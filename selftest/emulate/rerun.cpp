@@ -98,7 +98,7 @@ RerunObservable observable_of(const std::string& name, const std::string& unit,
 Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) try {
     Rerun result;
     result.asked = true;
-    if (verdict.causes.empty() && !verdict.extension.enters() && !options.always) {
+    if (verdict.causes.empty() && !verdict.extension.enters()) {
         result.not_done = "nothing was named or learnt that a run takes, so there is nothing to add to the "
                           "simulation";
         return result;

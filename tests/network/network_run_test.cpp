@@ -145,7 +145,7 @@ TEST_CASE("by radio the same in every placement, and frames leave evidence", "[n
     CHECK(count(frames, ",access_point,robot1,ack,14,24,") > 5);
     // Faults of packets act here as well.
     const Ended ended = bench.run("far", {bench.file("far.toml", text).string(), "--in-process", "--fault",
-                                          "partition node=network group=server begin=0s end=1s"});
+                                          "partition node=network group=server begin=250ms end=650ms"});
     INFO(ended.err);
     CHECK(ended.status == 0);
     CHECK(bench.report("far")["faults"][0]["fired"] > 3);

@@ -269,7 +269,7 @@ TEST_CASE("what cannot be performed again is said, not guessed") {
     Experiment experiment;
     experiment.kind = Kind::Rab;
     emulate::RerunOptions how;
-    CHECK(emulate::rerun(experiment, {}, how).not_done.find("no cause") != std::string::npos);
+    CHECK(emulate::rerun(experiment, {}, how).not_done.find("nothing was named") != std::string::npos);
     const Verdict verdict = named("microphone_gain", "microphone.gain0", 1.2, 1.0);
     CHECK(emulate::rerun(experiment, verdict, how).not_done.find("distance") != std::string::npos);
     experiment.kind = Kind::Motion;  // no word of its firmware
