@@ -5,12 +5,10 @@
 //
 // Deviations:
 // 1. Power falls with one exponent of distance; what differs from that is drawn once for each pair of
-// stations
-//    and stays, however they move. No walls, bodies and fading.
+//    stations and stays, however they move. No walls, bodies and fading.
 // 2. A frame of 1000 octets is lost with 10 % at the sensitivity, a tenth of it with each dB more.
 // 3. Other frames add to the noise, over the whole frame and each in full, whenever they overlap it; a
-// receiver
-//    locks on to no weaker frame first.
+//    receiver locks on to no weaker frame first.
 // 4. One channel, which others neither use nor disturb.
 
 #include "base/random.h"

@@ -136,7 +136,7 @@ void WifiNode::submit(std::size_t station, Frame frame, Time now) {
         ++computers_.counts(from).queue_full;
 }
 
-/// kEveryStation: it is for many; kNobody: nobody has the address.
+/// Of a packet for many the first that it is for; kNobody: nobody has the address.
 std::size_t WifiNode::computer_of(IpAddress to, std::size_t from) const {
     for (std::size_t c = 0; c < computers_.size(); ++c)
         if (c != from && computers_.is_for(c, to)) return c;

@@ -46,18 +46,8 @@ ControlClient::ControlClient(const fs::path& folder) {
     std::memcpy(place.sun_path, path.c_str(), path.size() + 1);
     socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const timeval patience{10, 0};  // for its first line: a run that has a client lets others wait
-    // The socket's name is known a little before it is there.
-    constexpr int kTries = 250, kBetweenUs = 20'000;
-    const auto connects = [&] {
-        for (int i = 0; i < kTries; ++i) {
-            if (::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) return true;
-            if (errno != ENOENT && errno != ECONNREFUSED) return false;
-            ::usleep(kBetweenUs);
-        }
-        return false;
-    };
     if (socket_ < 0 || ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
-        !connects()) {
+        ::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
         const int reason = errno;
         if (socket_ >= 0) ::close(socket_);
         throw InputError(folder.string(), "",

@@ -1,31 +1,12 @@
 #pragma once
-// Translated code as one core sees it (translate/): which program words begin a block, and how often others
-// were come to. Blocks themselves are shared by all cores of the process (translate/library.h).
 
-#include <cstdint>
-#include <cstdlib>
+#include "emu/chip/translated.h"
 
 namespace puckloop::avr {
 
 namespace translate {
 class Library;
 }
-
-struct Translated {
-    bool on = true;                         ///< Core::set_translate()
-    std::uint8_t hot = 0;                   ///< arrivals that make a block
-    translate::Library* library = nullptr;  ///< null: nothing is translated (yet)
-    /// By program word: offset of the block's code, 0 = none. The pages are taken as they are used.
-    std::uint32_t* entries = nullptr;
-    std::uint8_t* heat = nullptr;  ///< by program word: arrivals without a block
-
-    Translated() = default;
-    ~Translated() {
-        std::free(entries);
-        std::free(heat);
-    }
-    Translated(const Translated&) = delete;
-    Translated& operator=(const Translated&) = delete;
-};
+using Translated = chip::Translated<translate::Library>;
 
 }  // namespace puckloop::avr

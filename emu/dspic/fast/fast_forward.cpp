@@ -217,7 +217,6 @@ bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     m.instructions += skip.iterations * known.plan.instructions + skip.services * skip.summary->instructions;
     m.limit = std::min(m.until, m.events.next());
     known.plan.iterations -= skip.iterations;
-    known.plan.used = true;
     ++m.skip->skips;
     m.skip->skipped_cycles += skip.arrival - arrival;
     known.plan.gained += skip.arrival - arrival;

@@ -75,7 +75,6 @@ bool skip_iterations(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
         m.watchdog_cleared += cycles;
         schedule_watchdog(m);
     }
-    plan.used = true;
     plan.gained += cycles;
     ++m.skip->skips;
     m.skip->skipped_cycles += cycles;
@@ -111,7 +110,7 @@ void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op*
         known.walked = true;
         if (plan.iterations < kFewestIterations) return give_up_for_now(m, known);
         plan.alive = true;
-        plan.proven = plan.used = false;
+        plan.proven = false;
         plan.gained = 0;
         plan.proof_due = arrival + plan.cycles;
         plan.proof_interrupted = false;
@@ -186,10 +185,7 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
             adopt_registers(m, known);
             bool to_limit = false;
             const bool forwarded = clean && fast_forward(m, known, arrival);
-            if (!forwarded && enter_loop(m, known)) {
-                plan.used = true;
-                return;
-            }
+            if (!forwarded && enter_loop(m, known)) return;
             if (!forwarded) to_limit = skip_iterations(m, plan, arrival);
             note_skip(m, branch);
             plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);

@@ -92,7 +92,7 @@ void leave_state(Machine& m, const LoopTable& table, const LoopPosition& where, 
 bool enter_loop(Machine& m, IdleLoops::Branch& known) {
     if (known.trace.iterations == 0) return false;
     if (!known.table.trace) {
-        if (!known.plan.used) return false;  // many a plan serves once, and a table costs some skips
+        if (known.plan.gained == 0) return false;  // many a plan serves once, and a table costs some skips
         make_table(m, known);
     }
     const std::uint64_t iteration = known.trace.iterations - known.plan.iterations;

@@ -99,7 +99,6 @@ struct LoopPlan {
 
     bool alive = false;
     bool proven = false;          ///< a real iteration ended as the walk predicted
-    bool used = false;            ///< it has skipped something
     std::uint64_t gained = 0;     ///< cycles that it has skipped
     std::uint64_t proof_due = 0;  ///< cycle at which the proof must be there, nothing in between ...
     /// An arrival at this cycle ends an iteration that began as predicted: every scratch cell and flag is
