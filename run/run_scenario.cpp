@@ -40,6 +40,11 @@ physics::World with_added_things(const scenarios::Scenario& scenario) {
     for (const physics::Event& event : scenario.events.events) {
         append(world.boxes, event.action.thing.boxes);
         append(world.cylinders, event.action.thing.cylinders);
+        const physics::VirtualThings& added = event.action.thing.virtuals;
+        append(world.virtuals.walls, added.walls);
+        append(world.virtuals.boxes, added.boxes);
+        append(world.virtuals.cylinders, added.cylinders);
+        append(world.virtuals.lamps, added.lamps);
     }
     return world;
 }
@@ -86,10 +91,11 @@ void raise_descriptor_limit() {
 }  // namespace
 
 std::vector<std::string> result_files(const RunSetup& setup) {
-    std::vector<std::string> names{
-        "report.json", "report.json.part", "trace.csv",  "trajectory.csv", "trajectory.svg", "sensors.csv",
-        "objects.csv", "ir.csv",           "tams.csv",   "faults.csv",     "record.csv",     "trace.sr",
-        "trace.vcd",   "trace.pcapng",     "arena.json", "tracker.csv",    "mission.log"};
+    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
+                                   "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
+                                   "tams.csv",       "faults.csv",       "record.csv",  "trace.sr",
+                                   "trace.vcd",      "trace.pcapng",     "arena.json",  "tracker.csv",
+                                   "mission.log",    "pheromones.csv"};
     for (const PlannedNode& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);

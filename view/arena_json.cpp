@@ -14,6 +14,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kLampSign = 0.02;  // m: the circle that stands for a virtual lamp
+
 ordered_json shape_json(const physics::Shape& shape, const std::string& name) {
     ordered_json json{{"name", name}, {"x", shape.x}, {"y", shape.y}};
     if (shape.kind == physics::Shape::Kind::Circle) {
@@ -47,7 +49,8 @@ std::string arena_json(const physics::World& world) {
     ordered_json fixed = ordered_json::array(), things = ordered_json::array(),
                  patches = ordered_json::array(), lamps = ordered_json::array(),
                  speakers = ordered_json::array(), robots = ordered_json::array(),
-                 booths = ordered_json::array(), corners = ordered_json::array();
+                 booths = ordered_json::array(), corners = ordered_json::array(),
+                 virtuals = ordered_json::array();
     for (const physics::Point& corner : world.arena.corners)
         corners.push_back({corner.x, corner.y});
     for (const physics::Shape& wall : physics::arena_walls(world.arena))
@@ -58,6 +61,10 @@ std::string arena_json(const physics::World& world) {
         things.push_back(shape_json(shape_of(box), box.name));
     for (const physics::Cylinder& cylinder : world.cylinders)
         things.push_back(shape_json(shape_of(cylinder), cylinder.name));
+    for (const physics::VirtualBody& body : physics::virtual_bodies(world.virtuals))
+        virtuals.push_back(shape_json(body.shape, body.name));
+    for (const physics::Lamp& lamp : world.virtuals.lamps)
+        virtuals.push_back({{"name", lamp.name}, {"x", lamp.x}, {"y", lamp.y}, {"radius", kLampSign}});
     for (const physics::Patch& patch : world.patches)
         patches.push_back(patch_json(patch));
     for (const physics::Lamp& lamp : world.lamps)
@@ -89,7 +96,7 @@ std::string arena_json(const physics::World& world) {
                             {"fixed", fixed},       {"things", things},
                             {"patches", patches},   {"lamps", lamps},
                             {"speakers", speakers}, {"robots", robots},
-                            {"booths", booths}};
+                            {"booths", booths},     {"virtuals", virtuals}};
     return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 

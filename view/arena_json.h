@@ -8,7 +8,7 @@
 namespace puckloop::view {
 
 /// JSON: "corners", "floor" (grey 0..1), "fixed" and "things" (shapes), "patches", "lamps", "speakers",
-/// "robots", "booths". Metres and radians.
+/// "robots", "booths", "virtuals" (shapes that only robots sense). Metres and radians.
 std::string arena_json(const physics::World& world);
 
 }  // namespace puckloop::view

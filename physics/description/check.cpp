@@ -5,6 +5,7 @@
 #include "physics/description/parameters.h"
 #include "physics/description/plan.h"
 #include "physics/description/robot_parameters.h"
+#include "physics/description/trail_cells.h"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,12 @@ namespace {
 constexpr double kFarthest = 1000.0;      // m: nothing is further out or bigger
 constexpr double kMostReflective = 10.0;  // foil is 1.5
 constexpr double kBrightest = 100.0;
-constexpr double kLoudest = 1e5;  // counts: full scale 2 m away
-constexpr double kLongest = 1e9;  // s
+constexpr double kLoudest = 1e5;            // counts: full scale 2 m away
+constexpr double kLongest = 1e9;            // s
+constexpr std::size_t kMostData = 4;        // bytes of a frame
+constexpr double kShortestTurn = 0.02;      // s: a frame of 4 bytes lasts 7.7 ms
+constexpr double kWidestTrail = 0.5;        // m
+constexpr double kShortestHalfLife = 0.01;  // s
 constexpr double kLowest = 20,
                  kHighest = 4000;  // Hz: what microphones hear evenly here (physics/sensors/sound_waves.h)
 
@@ -42,7 +47,7 @@ class Checker {
         for (const auto& c : world_.cylinders)
             check_cylinder(c);
         for (const auto& l : world_.lamps)
-            check_lamp(l);
+            check_lamp("lamp", l);
         for (const auto& s : world_.speakers)
             check_speaker(s);
         for (const auto& p : world_.patches)
@@ -50,6 +55,7 @@ class Checker {
         for (const auto& b : world_.booths)
             check_booth(b);
         check_booths_apart();
+        check_virtuals();
         check_robots();
         check_bodies();
         check_recording();
@@ -133,34 +139,41 @@ class Checker {
         const auto &a = c[i], &b = c[(i + 1) % c.size()], &p = c[j], &q = c[(j + 1) % c.size()];
         return side(a, b, p) * side(a, b, q) < 0 && side(p, q, a) * side(p, q, b) < 0;
     }
-    void check_wall(const Wall& w) {
-        const auto what = named("wall", w.name, w.place);
+    std::string wall_sizes(const char* kind, const Wall& w) {
+        auto what = named(kind, w.name, w.place);
         position(what, w.place, w.from.x, w.from.y);
         position(what, w.place, w.to.x, w.to.y);
         size(what, w.place, "length", std::hypot(w.to.x - w.from.x, w.to.y - w.from.y));
         size(what, w.place, "thickness", w.thickness);
         size(what, w.place, "height", w.height);
         range(what, w.place, "reflectivity", w.reflectivity, 0.0, kMostReflective);
+        return what;
+    }
+    void check_wall(const Wall& w) {
+        const auto what = wall_sizes("wall", w);
         fixed_.push_back({what, w.place, shape_of(w)});
     }
-    void check_box(const Box& b) {
-        const auto what = named("box", b.name, b.place);
+    std::string box_sizes(const char* kind, const Box& b) {
+        auto what = named(kind, b.name, b.place);
         position(what, b.place, b.x, b.y, b.heading);
         size(what, b.place, "length", b.length);
         size(what, b.place, "width", b.width);
         size(what, b.place, "height", b.height);
-        solid(what, b, shape_of(b));
+        range(what, b.place, "reflectivity", b.reflectivity, 0.0, kMostReflective);
+        return what;
     }
-    void check_cylinder(const Cylinder& c) {
-        const auto what = named("cylinder", c.name, c.place);
+    void check_box(const Box& b) { solid(box_sizes("box", b), b, shape_of(b)); }
+    std::string cylinder_sizes(const char* kind, const Cylinder& c) {
+        auto what = named(kind, c.name, c.place);
         position(what, c.place, c.x, c.y);
         size(what, c.place, "radius", c.radius);
         size(what, c.place, "height", c.height);
-        solid(what, c, shape_of(c));
+        range(what, c.place, "reflectivity", c.reflectivity, 0.0, kMostReflective);
+        return what;
     }
+    void check_cylinder(const Cylinder& c) { solid(cylinder_sizes("cylinder", c), c, shape_of(c)); }
     template <class Thing>
     void solid(const std::string& what, const Thing& thing, const Shape& shape) {
-        range(what, thing.place, "reflectivity", thing.reflectivity, 0.0, kMostReflective);
         if (thing.movable) range(what, thing.place, "mass", thing.mass, 1e-3, 100.0);
         if (!thing.movable && !reaches_arena(shape))
             fail(what, thing.place, fmt::format("({} m, {} m) is outside the arena", shape.x, shape.y));
@@ -178,8 +191,8 @@ class Checker {
         }
         return false;
     }
-    void check_lamp(const Lamp& l) {
-        const auto what = named("lamp", l.name, l.place);
+    void check_lamp(const char* kind, const Lamp& l) {
+        const auto what = named(kind, l.name, l.place);
         position(what, l.place, l.x, l.y);
         range(what, l.place, "height", l.height, 0.0, kFarthest);
         range(what, l.place, "intensity", l.intensity, 0.0, kBrightest);
@@ -205,6 +218,57 @@ class Checker {
             size(what, p.place, "length", p.length);
             size(what, p.place, "width", p.width);
         }
+    }
+    /// They may be anywhere, in each other too.
+    void check_virtuals() {
+        const VirtualThings& things = world_.virtuals;
+        for (const auto& w : things.walls)
+            wall_sizes("virtual_wall", w);
+        for (const auto& b : things.boxes)
+            box_sizes("virtual_box", b);
+        for (const auto& c : things.cylinders)
+            cylinder_sizes("virtual_cylinder", c);
+        for (const auto& l : things.lamps)
+            check_lamp("virtual_lamp", l);
+        for (const auto& p : things.pheromones)
+            check_pheromone(p);
+        if (things.boards.size() > kMostVirtualBoards)
+            fail("virtual_board", things.boards.back().place,
+                 fmt::format("there are {} virtual boards", things.boards.size()),
+                 fmt::format("at most {}", kMostVirtualBoards));
+        for (const auto& b : things.boards)
+            check_virtual_board(b);
+    }
+    void check_virtual_board(const VirtualBoard& b) {
+        const auto what = named("virtual_board", b.name, b.place);
+        position(what, b.place, b.x, b.y, b.heading);
+        if (b.data.empty() || b.data.size() > kMostData)
+            fail(what, b.place, fmt::format("data has {} bytes", b.data.size()), "1 to 4 bytes");
+        range(what, b.place, "power", b.power, 0.0, 255.0);
+        range(what, b.place, "begin", b.begin, 0.0, kLongest);
+        range(what, b.place, "every", b.every, kShortestTurn, kLongest);
+        range(what, b.place, "jitter", b.jitter, 0.0, kLongest);
+        if (std::none_of(world_.robots.begin(), world_.robots.end(), [](const Robot& r) { return r.rab; }))
+            fail(what, b.place, "no robot has a range-and-bearing board that could hear it",
+                 "[robot.rab] of a robot");
+    }
+    void check_pheromone(const Pheromone& p) {
+        const auto what = named("pheromone", p.name, p.place);
+        range(what, p.place, "radius", p.radius, 1e-3, kWidestTrail);
+        range(what, p.place, "fill_time", p.fill_time, 1e-3, kLongest);
+        range(what, p.place, "half_life", p.half_life, 0.0, kLongest);
+        if (p.half_life > 0.0) range(what, p.place, "half_life", p.half_life, kShortestHalfLife, kLongest);
+        range(what, p.place, "grey", p.grey, 0.0, 1.0);
+        range(what, p.place, "cell", p.cell, 1e-3, 1.0);
+        if (p.record_every != 0.0)
+            range(what, p.place, "record_every", p.record_every, kSpreadInterval / 10, kLongest);
+        const TrailCells cells = trail_cells(p, world_.arena);
+        if (cells.columns * cells.rows > kMostTrailCells)
+            fail(what, p.place,
+                 fmt::format("cell = {:g} m makes {:.0f} x {:.0f} squares of this arena", p.cell,
+                             cells.columns, cells.rows),
+                 fmt::format("at most {:.0f}: a larger cell", kMostTrailCells));
+        range(what, p.place, "diffusion", p.diffusion, 0.0, kMostSpread * p.cell * p.cell / kSpreadInterval);
     }
     void check_booth(const Booth& b) {
         const auto what = named("tam", b.name, b.place);
@@ -292,7 +356,30 @@ class Checker {
 }  // namespace
 
 void check(const World& world) {
+    check_things(world);
+    check_who_senses(world.virtuals, world.robots, world.file);
+}
+
+void check_things(const World& world) {
     Checker(world).run();
+}
+
+void check_who_senses(const VirtualThings& things, const std::vector<Robot>& robots,
+                      const std::string& file) {
+    const auto each = [&](const auto& list, const char* kind) {
+        for (const auto& thing : list)
+            for (const std::string& name : thing.robots)
+                if (std::none_of(robots.begin(), robots.end(),
+                                 [&](const Robot& robot) { return robot.name == name; }))
+                    throw InputError(file, thing.place,
+                                     fmt::format("{} '{}': there is no robot '{}'", kind, thing.name, name),
+                                     "names of robots in this scenario");
+    };
+    each(things.walls, "virtual_wall");
+    each(things.boxes, "virtual_box");
+    each(things.cylinders, "virtual_cylinder");
+    each(things.lamps, "virtual_lamp");
+    each(things.pheromones, "pheromone");
 }
 
 }  // namespace puckloop::physics

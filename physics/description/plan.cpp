@@ -163,4 +163,23 @@ bool overlap(const Shape& a, const Shape& b, double tolerance) {
     return shadows_overlap(a, b, tolerance) && shadows_overlap(b, a, tolerance);
 }
 
+std::vector<VirtualBody> virtual_bodies(const VirtualThings& things) {
+    std::vector<VirtualBody> bodies;
+    const auto add = [&](const auto& list, const char* kind) {
+        for (const auto& thing : list)
+            bodies.push_back({thing.name, kind, shape_of(thing), thing.robots});
+    };
+    add(things.walls, "virtual_wall");
+    add(things.boxes, "virtual_box");
+    add(things.cylinders, "virtual_cylinder");
+    return bodies;
+}
+
+std::vector<Lamp> lamps_sensed_by(const World& world, std::string_view robot) {
+    std::vector<Lamp> lamps = world.lamps;
+    for (const auto& lamp : world.virtuals.lamps)
+        if (lamp.sensed_by(robot)) lamps.push_back(lamp);
+    return lamps;
+}
+
 }  // namespace puckloop::physics

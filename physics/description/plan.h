@@ -66,6 +66,18 @@ std::vector<std::string> fixed_names(const World& world);
 Shape shape_of(const Wall& wall);
 Shape shape_of(const Box& box);
 Shape shape_of(const Cylinder& cylinder);
+
+/// A wall, box or cylinder that only robots' proximity sensors meet.
+struct VirtualBody {
+    std::string name;
+    const char* kind = "";  ///< "virtual_wall", ...
+    Shape shape;
+    std::vector<std::string> robots;  ///< who senses it; empty: all
+    bool by_hand = false;             ///< has been moved or added since the start
+
+    bool sensed_by(std::string_view robot) const { return includes_robot(robots, robot); }
+};
+std::vector<VirtualBody> virtual_bodies(const VirtualThings& things);
 std::vector<Shape> arena_walls(const Arena& arena);
 
 }  // namespace puckloop::physics

@@ -88,6 +88,11 @@ class EventChecker {
             fail(event, fmt::format("'{}' is a {} (expected a robot)", name, kind));
     }
 
+    void need_no_trail(const Event& event, const char* why) const {
+        if (kind_of(event, event.action.object) == "pheromone")
+            fail(event, fmt::format("'{}' is a pheromone: {}", event.action.object, why));
+    }
+
     void check(const Event& event) const {
         const Action& action = event.action;
         if (std::string problem = problem_of(action); !problem.empty()) fail(event, problem);
@@ -108,19 +113,23 @@ class EventChecker {
             break;
         case Verb::SwitchOff:
         case Verb::SwitchOn:
-            if (const auto kind = kind_of(event, action.object); kind != "lamp" && kind != "speaker")
+            if (const auto kind = kind_of(event, action.object);
+                kind != "lamp" && kind != "virtual_lamp" && kind != "speaker")
                 fail(event, fmt::format("'{}' is a {} (expected a lamp or a speaker)", action.object, kind));
             break;
         case Verb::Set:
             check_property(event);
             return;
         case Verb::Remove:
+            need_no_trail(event, "it goes by itself");
+            if (kind_of(event, action.object) == "virtual_board")
+                fail(event, fmt::format("'{}' is a virtual board, which stays in the run", action.object));
             if (kind_of(event, action.object) == "robot")
                 fail(event, fmt::format("'{}' is a robot, which stays in the run (expected lift, or a thing)",
                                         action.object));
             return;
         case Verb::Move:
-            kind_of(event, action.object);
+            need_no_trail(event, "it lies where it was laid");
             break;
         }
         check_place(event);
@@ -136,7 +145,7 @@ class EventChecker {
         if (when.kind != Condition::Kind::Near) return;
         const std::string kind = kind_of(event, when.other);
         if (when.other == when.robot) fail(event, fmt::format("near: '{}' is itself", when.other));
-        if (kind == "lamp" || kind == "speaker" || kind == "floor_patch")
+        if (kind != "robot" && kind != "box" && kind != "cylinder" && kind != "wall")
             fail(event, fmt::format("near: '{}' is a {} (expected a robot, box, cylinder or wall)",
                                     when.other, kind));
     }
@@ -147,7 +156,8 @@ class EventChecker {
             const std::string& p = action.property;
             if (kind == kFloor || kind == "floor_patch") return p == "grey";
             if (kind == kRoomLight) return p == "ambient";
-            if (kind == "lamp") return p == "intensity";
+            if (kind == "lamp" || kind == "virtual_lamp") return p == "intensity";
+            if (kind == "pheromone" || kind == "virtual_board") return false;
             if (kind == "speaker") return p == "level";
             if (kind == "robot") return p == "charge" || p == "ground";
             return p == "reflectivity";
@@ -164,7 +174,8 @@ class EventChecker {
         const NewThing& thing = event.action.thing;
         World world = world_of(thing, world_.arena);
         world.file = event.file;
-        physics::check(world);
+        check_things(world);
+        check_who_senses(world.virtuals, world_.robots, event.file);
         for (const Box& box : thing.boxes)
             check_free(event, shape_of(box));
         for (const Cylinder& cylinder : thing.cylinders)

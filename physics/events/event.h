@@ -39,6 +39,7 @@ struct NewThing {
     std::vector<Lamp> lamps{};
     std::vector<Speaker> speakers{};
     std::vector<Patch> patches{};
+    VirtualThings virtuals{};  ///< no pheromones
 };
 
 struct Action {

@@ -19,7 +19,7 @@ struct adl_serializer<std::optional<T>> {
 
 namespace puckloop::physics {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NewThing, walls, boxes, cylinders, lamps, speakers, patches)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NewThing, walls, boxes, cylinders, lamps, speakers, patches, virtuals)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Action, verb, object, to, relative, heading, over, thing, property, value,
                                    number, address, hold, command, toml)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Condition, kind, robot, other, at, radius, length, width, distance, on)

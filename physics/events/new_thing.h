@@ -18,9 +18,15 @@ void for_each_thing(Things& things, Function function) {
     each(things.lamps, "lamp");
     each(things.speakers, "speaker");
     each(things.patches, "floor_patch");
+    each(things.virtuals.walls, "virtual_wall");
+    each(things.virtuals.boxes, "virtual_box");
+    each(things.virtuals.cylinders, "virtual_cylinder");
+    each(things.virtuals.lamps, "virtual_lamp");
+    each(things.virtuals.pheromones, "pheromone");
+    each(things.virtuals.boards, "virtual_board");
 }
 
-/// The new thing in an arena with nothing else, so that check() judges its sizes and values.
+/// The new thing in an arena with nothing else, so that check_things() judges its sizes and values.
 inline World world_of(const NewThing& thing, const Arena& arena) {
     World world;
     world.arena = arena;
@@ -30,6 +36,7 @@ inline World world_of(const NewThing& thing, const Arena& arena) {
     world.lamps = thing.lamps;
     world.speakers = thing.speakers;
     world.patches = thing.patches;
+    world.virtuals = thing.virtuals;
     return world;
 }
 

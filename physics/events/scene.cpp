@@ -20,7 +20,8 @@ std::string problem_of_thing(const NewThing& thing, const World& like) {
     world.arena.place = {};
     for_each_thing(world, [](auto& one, const char*) { one.place.clear(); });
     try {
-        check(world);
+        check_things(world);
+        check_who_senses(world.virtuals, like.robots, {});
     } catch (const InputError& error) {
         return error.what();
     }
@@ -165,6 +166,11 @@ std::string Scene::add(const Action& action) {
     append(world.lamps, thing.lamps);
     append(world.speakers, thing.speakers);
     append(world.patches, thing.patches);
+    for (VirtualBody& body : virtual_bodies(thing.virtuals)) {
+        body.by_hand = true;
+        model_.virtual_bodies_.push_back(std::move(body));
+    }
+    append(world.virtuals.lamps, thing.virtuals.lamps);
     scene_changed();
     return {};
 }
@@ -192,6 +198,14 @@ std::string Scene::remove(const Action& action, Found what) {
     case Kind::Patch:
         world.patches.erase(at(world.patches));
         break;
+    case Kind::VirtualBody:
+        model_.virtual_bodies_.erase(at(model_.virtual_bodies_));
+        break;
+    case Kind::VirtualLamp:
+        world.virtuals.lamps.erase(at(world.virtuals.lamps));
+        break;
+    case Kind::VirtualBoard:
+        return fmt::format("'{}' is a virtual board, which stays in the run", action.object);
     default:
         return fmt::format("'{}' is a robot, which stays in the run (expected lift, or a thing)",
                            action.object);
@@ -251,11 +265,14 @@ std::string Scene::set(const Action& action, Found what) {
     }
     double* value = nullptr;
     if (what.kind == Kind::Lamp && property == "intensity") value = &world.lamps[what.index].intensity;
+    if (what.kind == Kind::VirtualLamp && property == "intensity")
+        value = &world.virtuals.lamps[what.index].intensity;
     if (what.kind == Kind::Speaker && property == "level") value = &world.speakers[what.index].level;
     if (what.kind == Kind::Patch && property == "grey" && world.patches[what.index].image.empty())
         value = &world.patches[what.index].grey;
     if (property == "reflectivity") {
         if (what.kind == Kind::Fixed) value = &model_.fixed_[what.index].reflectivity;
+        if (what.kind == Kind::VirtualBody) value = &model_.virtual_bodies_[what.index].shape.reflectivity;
         if (what.kind == Kind::Object)
             value = &model_.moving_[model_.robot_count() + what.index].shape.reflectivity;
     }
@@ -278,10 +295,11 @@ std::string Scene::unset(const Action& action, Found what) {
 
 std::string Scene::switch_over(const Action& action, Found what) {
     World& world = model_.description_;
-    if (what.kind != Kind::Lamp && what.kind != Kind::Speaker)
+    if (what.kind != Kind::Lamp && what.kind != Kind::VirtualLamp && what.kind != Kind::Speaker)
         return fmt::format("'{}' has no switch (expected a lamp or a speaker)", action.object);
-    double& value =
-        what.kind == Kind::Lamp ? world.lamps[what.index].intensity : world.speakers[what.index].level;
+    double& value = what.kind == Kind::Lamp          ? world.lamps[what.index].intensity
+                    : what.kind == Kind::VirtualLamp ? world.virtuals.lamps[what.index].intensity
+                                                     : world.speakers[what.index].level;
     const auto before = was_on_.find(action.object);
     const bool off = before != was_on_.end();
     if (action.verb == Verb::SwitchOff) {

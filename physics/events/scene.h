@@ -12,7 +12,18 @@ namespace puckloop::physics {
 
 /// A thing by its name: where to find it.
 struct Found {
-    enum class Kind : std::uint8_t { Nothing, Robot, Fixed, Object, Lamp, Speaker, Patch };
+    enum class Kind : std::uint8_t {
+        Nothing,
+        Robot,
+        Fixed,
+        Object,
+        Lamp,
+        Speaker,
+        Patch,
+        VirtualBody,
+        VirtualLamp,
+        VirtualBoard
+    };
     Kind kind = Kind::Nothing;
     std::size_t index = 0;  ///< among the model's robots, fixed things, objects, lamps, ...
 

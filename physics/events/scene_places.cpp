@@ -36,6 +36,12 @@ Found Scene::find(std::string_view name) const {
     if (const auto i = index_of(world.speakers, name); i < world.speakers.size())
         return {PlaceKind::Speaker, i};
     if (const auto i = index_of(world.patches, name); i < world.patches.size()) return {PlaceKind::Patch, i};
+    if (const auto i = index_of(model_.virtual_bodies_, name); i < model_.virtual_bodies_.size())
+        return {PlaceKind::VirtualBody, i};
+    if (const auto i = index_of(world.virtuals.lamps, name); i < world.virtuals.lamps.size())
+        return {PlaceKind::VirtualLamp, i};
+    if (const auto i = index_of(world.virtuals.boards, name); i < world.virtuals.boards.size())
+        return {PlaceKind::VirtualBoard, i};
     return {};
 }
 
@@ -63,6 +69,12 @@ std::vector<Scene::Listed> Scene::list() const {
         add("speaker", world.speakers[i].name, {PlaceKind::Speaker, i});
     for (std::size_t i = 0; i < world.patches.size(); ++i)
         add("floor_patch", world.patches[i].name, {PlaceKind::Patch, i});
+    for (std::size_t i = 0; i < model_.virtual_bodies_.size(); ++i)
+        add(model_.virtual_bodies_[i].kind, model_.virtual_bodies_[i].name, {PlaceKind::VirtualBody, i});
+    for (std::size_t i = 0; i < world.virtuals.lamps.size(); ++i)
+        add("virtual_lamp", world.virtuals.lamps[i].name, {PlaceKind::VirtualLamp, i});
+    for (std::size_t i = 0; i < world.virtuals.boards.size(); ++i)
+        add("virtual_board", world.virtuals.boards[i].name, {PlaceKind::VirtualBoard, i});
     return all;
 }
 
@@ -81,14 +93,21 @@ std::string Scene::unknown(std::string_view name) const {
 Scene::Pose Scene::pose_of(Found what) const {
     const World& world = model_.description_;
     const auto plain = [](const auto& thing) { return Pose{thing.x, thing.y, 0.0}; };
+    const auto placed = [](const Shape& shape) {
+        return Pose{shape.x, shape.y, std::atan2(shape.sine, shape.cosine)};
+    };
     const auto turned = [](const auto& thing) { return Pose{thing.x, thing.y, thing.heading}; };
     switch (what.kind) {
     case PlaceKind::Robot:
         return turned(model_.state(what.index));
-    case PlaceKind::Fixed: {
-        const Shape& shape = model_.fixed_[what.index];
-        return {shape.x, shape.y, std::atan2(shape.sine, shape.cosine)};
-    }
+    case PlaceKind::Fixed:
+        return placed(model_.fixed_[what.index]);
+    case PlaceKind::VirtualBody:
+        return placed(model_.virtual_bodies_[what.index].shape);
+    case PlaceKind::VirtualLamp:
+        return plain(world.virtuals.lamps[what.index]);
+    case PlaceKind::VirtualBoard:
+        return turned(world.virtuals.boards[what.index]);
     case PlaceKind::Object:
         return turned(model_.object(what.index));
     case PlaceKind::Lamp:
@@ -126,6 +145,17 @@ void Scene::place(Found what, const Pose& pose, double vx, double vy) {
         break;
     case PlaceKind::Speaker:
         put_at(world.speakers[what.index]);
+        break;
+    case PlaceKind::VirtualBody:
+        model_.virtual_bodies_[what.index].shape.place(pose.x, pose.y, pose.heading);
+        model_.virtual_bodies_[what.index].by_hand = true;
+        break;
+    case PlaceKind::VirtualLamp:
+        put_at(world.virtuals.lamps[what.index]);
+        break;
+    case PlaceKind::VirtualBoard:
+        put_at(world.virtuals.boards[what.index]);
+        world.virtuals.boards[what.index].heading = pose.heading;
         break;
     case PlaceKind::Patch:
         put_at(world.patches[what.index]);

@@ -66,7 +66,7 @@ bool IrFrames::edge(Time now, std::size_t sender, bool lit) {
 void IrFrames::seen(std::size_t sender) {
     auto& frame = senders_[sender].frame;
     if (!frame) return;
-    for (std::size_t r = 0; r < senders_.size(); ++r) {
+    for (std::size_t r = 0; r < medium_.listener_count(); ++r) {
         Heard& heard = frame->at[r];
         heard.distance = r == sender ? 0.0 : medium_.distance(sender, r);
         if (!medium_.coupled(sender, r)) continue;
@@ -120,7 +120,7 @@ std::vector<const IrFrames::Frame*> IrFrames::beside(const Frame& frame) const {
 }
 
 void IrFrames::write(const Frame& frame) {
-    for (std::size_t r = 0; r < senders_.size(); ++r) {
+    for (std::size_t r = 0; r < medium_.listener_count(); ++r) {
         const bool own = r == frame.sender;
         if (!own || frame.at[r].receivers != 0) write(frame, r);
     }
@@ -166,7 +166,7 @@ std::string IrFrames::finish() {
         if (senders_[i].lit) edge(senders_[i].run_start, i, false);  // cut off: ends where it was last seen
     close_until(cosim::kNever);
     auto report = nlohmann::ordered_json::array();
-    for (std::size_t r = 0; r < counts_.size(); ++r) {
+    for (std::size_t r = 0; r < medium_.listener_count(); ++r) {
         const Count& c = counts_[r];
         report.push_back({{"receiver", medium_.name(r)},
                           {"frames", c.frames},

@@ -7,6 +7,10 @@
 
 namespace puckloop::physics {
 
+namespace {
+constexpr double kVirtualCarrier = 482'353;  // Hz: what the original firmware sets, docs/rab.md
+}
+
 IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world)), changes_world_(changes) {
     for (const Robot& robot : world.robots) {
         const Parameters parameters = parameters_of(world, robot);
@@ -14,7 +18,7 @@ IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world
         moving_.push_back(circle_shape(robot.x, robot.y, body.radius, body.height, body.reflectivity));
         board_of_.push_back(boards_.size());
         if (!robot.rab) {
-            board_of_.back() = world.robots.size();
+            board_of_.back() = kNoBoard;
             continue;
         }
         Board board{robot.name,
@@ -36,11 +40,14 @@ IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world
         for (const auto& thing : things) {
             if (!thing.movable) continue;
             moving_.push_back(shape_of(thing));
-            board_of_.push_back(world.robots.size());
+            board_of_.push_back(kNoBoard);
         }
     };
     add_movable(world.boxes);
     add_movable(world.cylinders);
+    listeners_ = boards_.size();
+    for (const VirtualBoard& virtual_board : world.virtuals.boards)
+        add_virtual(world, virtual_board);
     for (const Board& sender : boards_)
         for (const Board& receiver : boards_) {
             const std::string pair = sender.name + ">" + receiver.name;
@@ -54,6 +61,24 @@ IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world
     for (const Shape& shape : moving_)
         heights_.push_back(shape.height);
     find_mirrors();
+}
+
+/// Like a robot's, but nothing stands there that could shade or reflect.
+void IrMedium::add_virtual(const World& world, const VirtualBoard& described) {
+    const Parameters parameters = with({}, world.parameters);
+    moving_.push_back(circle_shape(described.x, described.y, parameters.robot.radius, 0.0, 0.0));
+    board_of_.push_back(boards_.size());
+    Board board{described.name,
+                IrBoard(parameters.ir, world.seed, described.name),
+                moving_.size() - 1,
+                0,
+                0,
+                described.power,
+                kVirtualCarrier,
+                0};
+    board.model.place(described.x, described.y, described.heading);
+    boards_.push_back(std::move(board));
+    dark_level_.emplace_back();
 }
 
 void IrMedium::find_mirrors() {

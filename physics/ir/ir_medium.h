@@ -26,19 +26,25 @@ struct IrLight {
     IrArray<float> carrier{}, level{};
 };
 
+inline constexpr std::size_t kNoBoard = static_cast<std::size_t>(-1);
+
 /// Byte of a board that has not said anything about its power.
 inline constexpr double kPotentiometerAtPowerOn = 128;
 
 class IrMedium {
   public:
-    /// Boards are the robots with `rab`, in the description's order. The description must have passed
-    /// check().
-    /// `changes`: events may alter what is in the world, so that even a lone board may come to hear itself.
+    /// Boards are the robots with `rab`, in the description's order, then the virtual ones. The description
+    /// must have passed check(). `changes`: events may alter what is in the world, so that even a lone board
+    /// may come to hear itself.
     explicit IrMedium(const World& world, bool changes = false);
     IrMedium(const IrMedium&) = delete;
     IrMedium& operator=(const IrMedium&) = delete;
 
     std::size_t board_count() const { return boards_.size(); }
+    /// The first so many listen: boards of robots. Those behind them are virtual.
+    std::size_t listener_count() const { return listeners_; }
+    /// Of a virtual board, for move().
+    std::size_t body_of(std::size_t board) const { return boards_[board].robot; }
     const std::string& name(std::size_t board) const { return boards_[board].name; }
     const IrParameters& parameters(std::size_t board) const { return boards_[board].model.parameters(); }
     /// False: nothing that any board does can reach this one.
@@ -173,12 +179,14 @@ class IrMedium {
     std::vector<IrSpell> spells_;
     std::vector<IrArray<float>> dark_level_;
     void find_mirrors();
+    void add_virtual(const World& world, const VirtualBoard& described);
 
     std::vector<Shape> fixed_, moving_, added_;
     std::vector<double> heights_;  // of what moves, when it is not out
     bool changes_world_;
     std::vector<const Shape*> mirrors_;
-    std::vector<std::size_t> board_of_;  // of each moving body; board_count() for none
+    std::vector<std::size_t> board_of_;  // of each moving body; kNoBoard for none
+    std::size_t listeners_ = 0;
     std::uint64_t changes_ = 1;
     Undo undo_;
     const IrFaultEffects* fault_effects_ = nullptr;

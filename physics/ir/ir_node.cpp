@@ -2,9 +2,11 @@
 
 #include "base/checkpoint.h"
 #include "base/error.h"
+#include "physics/description/robot_parameters.h"
 #include "physics/ir/ir_faults.h"
 #include "physics/ir/ir_frames.h"
 #include "physics/ir/ir_receiver.h"
+#include "physics/ir/virtual_senders.h"
 #include "physics/world/pose_signals.h"
 
 #include <fmt/format.h>
@@ -71,12 +73,15 @@ struct IrNode::Impl : cosim::Rewindable {
     PortIndex world_port() const { return static_cast<PortIndex>(receivers.size()); }
     void take(const Message& message);
     void take_scene(std::size_t id, double value);
+    void take_virtual_pose(std::size_t number, double value);
     /// Everything stamped `now` has been taken.
     void apply(Time now);
     /// The sender's light has changed; `everywhere`: at boards that it no longer reaches, too.
     void reach(std::size_t sender, bool everywhere);
     /// Lights again what faults have changed.
     void show_faults();
+    /// The next instant at which something changes without a message.
+    Time next() const { return std::min(faults ? faults->next() : kNever, senders.next()); }
     void release(Time until, std::vector<Message>& outbox);
 
     void mark() override;
@@ -88,7 +93,7 @@ struct IrNode::Impl : cosim::Rewindable {
         archive(medium, frames);
         for (IrReceiver& receiver : receivers)
             archive(receiver);
-        archive(looked, poses, masks, granted);
+        archive(looked, poses, masks, granted, senders);
         if (faults) archive(*faults);
     }
 
@@ -100,11 +105,13 @@ struct IrNode::Impl : cosim::Rewindable {
     std::vector<BoardSignals> signals;
     std::vector<IrReceiver> receivers;
     std::vector<Time> refresh, looked;  ///< period, and when the board's coupling was last looked at
-    std::vector<std::array<double, kPoseSignals>> poses;
+    std::vector<std::array<double, kPoseSignals>> poses;  ///< bodies, then virtual boards
+    std::size_t described = 0;                            ///< bodies among them
     std::vector<bool> moved, touched;  ///< bodies and boards changed by the messages of one instant
     std::vector<bool> reached;         ///< boards at which the light changed with them
     std::vector<std::uint16_t> masks;
     std::vector<IrOutput> released;
+    VirtualSenders senders;
     std::unique_ptr<IrFaults> faults;  ///< null: none was asked for
     Time granted = 0;
     bool any_moved = false;
@@ -120,7 +127,8 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
     : world(checked_for_ir(description)),
       name(options.name),
       medium(world, options.changes),
-      frames(medium, options.frames_csv) {
+      frames(medium, options.frames_csv),
+      senders(world, cosim::from_seconds(with({}, world.parameters).ir.chip)) {
     for (const Robot& robot : world.robots) {
         poses.push_back({robot.x, robot.y, robot.heading});
         if (!robot.rab) continue;
@@ -130,6 +138,8 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
         refresh.push_back(cosim::from_seconds(medium.parameters(refresh.size()).refresh));
     }
     ports.push_back({"world", cosim::PortKind::Signals});
+    for (std::size_t board = receivers.size(); board < medium.board_count(); ++board)
+        refresh.push_back(cosim::from_seconds(medium.parameters(board).refresh));
     for (const Box& box : world.boxes)
         if (box.movable) poses.push_back({box.x, box.y, box.heading});
     for (const Cylinder& cylinder : world.cylinders)
@@ -137,11 +147,14 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
     const auto fixed = fixed_shapes(world);
     for (std::size_t i = 0; i < fixed.size(); ++i)
         shapes[2 * i] = values_of(fixed[i]);  // numbered as SceneSignals::shape() does
+    described = poses.size();
+    for (const VirtualBoard& board : world.virtuals.boards)
+        poses.push_back({board.x, board.y, board.heading});
     moved.resize(poses.size());
-    touched.resize(receivers.size());
+    touched.resize(medium.board_count());
     reached.resize(receivers.size());
-    masks.resize(receivers.size());
-    looked.resize(receivers.size());
+    masks.resize(medium.board_count());
+    looked.resize(medium.board_count());
     if (!options.faults.empty()) {
         faults = std::make_unique<IrFaults>(options.faults, medium);
         medium.set_fault_effects(faults.get());
@@ -154,8 +167,12 @@ void IrNode::Impl::take(const Message& message) {
     const auto* signal = std::get_if<cosim::Signal>(&message.payload);
     if (signal == nullptr) return;
     if (message.port == world_port()) {
+        if (is_virtual_board_signal(signal->id)) {
+            take_virtual_pose(virtual_board_signal(0, 0) - signal->id, signal->value);
+            return;
+        }
         const std::size_t body = signal->id / kPoseSignals;
-        if (body >= poses.size()) {
+        if (body >= described) {
             take_scene(signal->id, signal->value);
             return;
         }
@@ -178,11 +195,18 @@ void IrNode::Impl::take(const Message& message) {
         masks[board] = static_cast<std::uint16_t>(masks[board] & ~(1U << what));
 }
 
+void IrNode::Impl::take_virtual_pose(std::size_t number, double value) {
+    const std::size_t body = described + number / kPoseSignals;
+    if (body >= poses.size()) return;
+    poses[body][number % kPoseSignals] = value;
+    moved[body] = any_moved = true;
+}
+
 /// A body lifted or taken away, a shape changed: once all of the instant is here, for a shape.
 void IrNode::Impl::take_scene(std::size_t id, double value) {
-    const SceneSignals ids{poses.size()};
+    const SceneSignals ids{described};
     any_moved = true;
-    if (id < ids.out(poses.size())) {
+    if (id < ids.out(described)) {
         medium.set_out(id - ids.out(0), value != 0.0);
         return;
     }
@@ -198,7 +222,7 @@ void IrNode::Impl::reach(std::size_t sender, bool everywhere) {
 }
 
 void IrNode::Impl::show_faults() {
-    for (std::size_t s = 0; s < receivers.size(); ++s) {
+    for (std::size_t s = 0; s < medium.board_count(); ++s) {
         if (!faults->again(s)) continue;
         medium.relight_anew(s);
         reach(s, true);
@@ -215,6 +239,11 @@ void IrNode::Impl::apply(Time now) {
         faults->act(now);
         show_faults();
     }
+    senders.act(now, [this](std::size_t number, bool lit) {
+        constexpr std::uint16_t kAll = (1U << kIrSensors) - 1;
+        touched[receivers.size() + number] = true;
+        masks[receivers.size() + number] = lit ? kAll : 0;
+    });
     if (any_moved) {
         for (std::size_t i = 0; i < poses.size(); ++i)
             if (moved[i]) medium.move(i, poses[i][0], poses[i][1], poses[i][2]);
@@ -223,14 +252,14 @@ void IrNode::Impl::apply(Time now) {
             medium.set_shape(number % 2 == 0, number / 2, shape_from(shapes[number]));
         altered.clear();
         any_moved = false;
-        for (std::size_t s = 0; s < receivers.size(); ++s) {
+        for (std::size_t s = 0; s < medium.board_count(); ++s) {
             if (medium.emitters(s) == 0 || touched[s] || now - looked[s] < refresh[s]) continue;
             looked[s] = now;
             if (medium.refresh(s)) reach(s, true);
         }
     }
     // All boards change at once: only then do receivers look.
-    for (std::size_t s = 0; s < receivers.size(); ++s) {
+    for (std::size_t s = 0; s < medium.board_count(); ++s) {
         if (!touched[s]) continue;
         touched[s] = false;
         medium.set_emitters(s, masks[s]);
@@ -315,7 +344,7 @@ void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Mes
     auto& ir = *impl_;
     for (auto next = inbox.begin();;) {
         Time now = next != inbox.end() ? next->time : kNever;
-        const Time due = ir.faults ? ir.faults->next() : kNever;
+        const Time due = ir.next();
         if (due < until || (next != inbox.end() && due < now)) now = std::min(now, due);
         if (now == kNever) break;
         for (; next != inbox.end() && next->time == now; ++next)
@@ -329,8 +358,9 @@ void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Mes
 Time IrNode::earliest_output(PortIndex port) const {
     if (port >= impl_->receivers.size()) return kNever;
     const IrReceiver& receiver = impl_->receivers[port];
-    if (!impl_->faults) return receiver.next_output();
-    return std::min(receiver.next_output(), cosim::later(impl_->faults->next(), receiver.lookahead()));
+    const Time own = impl_->next();
+    return own == kNever ? receiver.next_output()
+                         : std::min(receiver.next_output(), cosim::later(own, receiver.lookahead()));
 }
 
 Time IrNode::lookahead(PortIndex port) const {

@@ -61,6 +61,7 @@ struct WorldNode::Impl {
     void publish(std::vector<cosim::Message>& outbox);
     void publish_poses(std::vector<cosim::Message>& outbox);
     void publish_scene(std::vector<cosim::Message>& outbox);
+    void publish_virtual_boards(std::vector<cosim::Message>& outbox);
     void publish_body(std::size_t id, double value, std::vector<cosim::Message>& outbox);
 
     WorldModel model;
@@ -69,10 +70,11 @@ struct WorldNode::Impl {
     std::vector<BoothLink> booths;
     SoundLink sound;
     cosim::PortIndex first_booth = 0xFFFF;
-    std::vector<cosim::PortIndex> pose_ports;  // media: they hear where everything is
-    std::vector<double> poses;                 // as last published; empty without those
-    std::map<std::size_t, double> scene;       // likewise, by id: what events change
-    std::vector<cosim::Message> waiting;       // stamped at or after the next step
+    std::vector<cosim::PortIndex> pose_ports;                     // media: they hear where everything is
+    std::vector<double> poses;                                    // as last published; empty without those
+    std::map<std::size_t, double> scene;                          // likewise, by id: what events change
+    std::vector<std::array<double, kPoseSignals>> virtual_poses;  // of boards, as last published
+    std::vector<cosim::Message> waiting;                          // stamped at or after the next step
     std::optional<CameraPort> cameras;
     cosim::PortIndex first_camera = 0xFFFF;
     std::optional<Recorder> recorder;
@@ -121,6 +123,8 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
         for (std::size_t i = 0; i < model.fixed_count(); ++i)
             for (std::size_t k = 0; k < kShapeSignals; ++k)
                 scene[ids.shape(true, i) + k] = values_of(model.fixed(i))[k];
+        for (const VirtualBoard& board : model.description().virtuals.boards)
+            virtual_poses.push_back({board.x, board.y, board.heading});
     }
     for (std::size_t i = 0; i < links.size(); ++i) {
         const Robot& robot = model.description().robots[i];
@@ -168,6 +172,7 @@ void WorldNode::Impl::take(const cosim::Message& message) {
         if (links[robot].wheel[static_cast<std::size_t>(side)] == signal->id)
             model.wheel(robot, side, signal->value, cosim::to_seconds(message.time));
     sound.take(robot, signal->id, signal->value, cosim::to_seconds(message.time));
+    model.board_signal(robot, signal->id, signal->value);
     if (timeline.active()) timeline.board_signal(robot, signal->id, signal->value);
 }
 
@@ -226,6 +231,20 @@ void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
     }
 }
 
+/// Where virtual boards are, for the infra-red medium alone: it knows where they were at the start.
+void WorldNode::Impl::publish_virtual_boards(std::vector<cosim::Message>& outbox) {
+    const auto& boards = model.description().virtuals.boards;
+    for (std::size_t i = 0; i < boards.size(); ++i) {
+        const std::array<double, kPoseSignals> now{boards[i].x, boards[i].y, boards[i].heading};
+        for (std::size_t k = 0; k < kPoseSignals; ++k) {
+            if (virtual_poses[i][k] == now[k]) continue;
+            virtual_poses[i][k] = now[k];
+            outbox.push_back({next_step + kStep, pose_ports.front(),
+                              cosim::Signal{static_cast<std::uint16_t>(virtual_board_signal(i, k)), now[k]}});
+        }
+    }
+}
+
 void WorldNode::Impl::publish_body(std::size_t id, double value, std::vector<cosim::Message>& outbox) {
     double& last = scene[id];
     if (value == last) return;
@@ -237,6 +256,7 @@ void WorldNode::Impl::publish_body(std::size_t id, double value, std::vector<cos
 /// What events change, for the infra-red medium.
 void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
     if (poses.empty() || !timeline.active()) return;
+    publish_virtual_boards(outbox);
     const std::size_t moving = poses.size() / kPoseSignals;
     const SceneSignals ids{moving};
     const auto body = [&](bool fixed, std::size_t index, const Shape& shape) {
@@ -316,6 +336,7 @@ std::string WorldNode::finish() {
     const auto& model = impl_->model;
     impl_->timeline.end();
     impl_->log.end(model);
+    if (impl_->recorder) impl_->recorder->end(model);
     nlohmann::ordered_json report;
     report["steps"] = model.steps_done();
     report["robots"] = nlohmann::ordered_json::array();

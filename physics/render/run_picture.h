@@ -3,6 +3,7 @@
 
 #include "physics/render/path_file.h"
 #include "physics/render/svg_canvas.h"
+#include "physics/render/trail_file.h"
 #include "physics/world/booth_record.h"
 
 #include <array>
@@ -25,7 +26,7 @@ double round_up(double least);
 class Picture {
   public:
     Picture(const World& world, const Paths& robots, const Paths& objects,
-            const std::vector<BoothColours>& booths);
+            const std::vector<BoothColours>& booths, const std::vector<TrailSquare>& trails);
     /// The SVG document.
     std::string draw();
 
@@ -37,7 +38,9 @@ class Picture {
     void glow(const Lamp& lamp);
     void bulb(const Lamp& lamp);
     void label(double x, double y, const std::string& name, double right);
+    void trails();
     void things();
+    void virtual_things();
     void centred(const Shape& shape, const std::string& name);
     /// Where it stood, dashed; its way; where it ended.
     void moved(const std::string& name, Shape shape);
@@ -57,6 +60,7 @@ class Picture {
     const Paths& robots_;
     const Paths& objects_;
     const std::vector<BoothColours>& booths_;
+    const std::vector<TrailSquare>& trails_;
     SvgCanvas canvas_;
     std::vector<Pixel> labels_;
     std::size_t glows_ = 0;

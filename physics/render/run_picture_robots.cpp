@@ -46,6 +46,7 @@ std::string Picture::draw() {
         glow(lamp);
     booths();
     things();
+    virtual_things();
     for (const auto& lamp : world_.lamps)
         bulb(lamp);
     for (std::size_t i = 0; i < robots_.size(); ++i)

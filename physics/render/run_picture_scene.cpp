@@ -71,8 +71,13 @@ void draw_image(const Patch& patch, SvgCanvas& canvas) {
 }  // namespace
 
 Picture::Picture(const World& world, const Paths& robots, const Paths& objects,
-                 const std::vector<BoothColours>& booths)
-    : world_(world), robots_(robots), objects_(objects), booths_(booths), canvas_(frame(world)) {}
+                 const std::vector<BoothColours>& booths, const std::vector<TrailSquare>& trails)
+    : world_(world),
+      robots_(robots),
+      objects_(objects),
+      booths_(booths),
+      trails_(trails),
+      canvas_(frame(world)) {}
 
 void Picture::floor() {
     canvas_.raw("<clipPath id=\"arena\">");
@@ -89,7 +94,15 @@ void Picture::floor() {
                               ? circle_shape(p.x, p.y, p.radius, 0, 0)
                               : box_shape(p.x, p.y, p.heading, p.length, p.width, 0, 0),
                           fmt::format("fill=\"{}\"", grey(p.grey)));
+    trails();
     canvas_.raw("</g>\n");
+}
+
+/// As at the end of the run.
+void Picture::trails() {
+    for (const TrailSquare& square : trails_)
+        canvas_.shape(box_shape(square.x, square.y, 0, square.side, square.side, 0, 0),
+                      fmt::format("fill=\"{}\" fill-opacity=\"{:.2f}\"", grey(square.grey), square.strength));
 }
 
 void Picture::grid() {
@@ -164,6 +177,28 @@ void Picture::things() {
         draw(box);
     for (const auto& cylinder : world_.cylinders)
         draw(cylinder);
+}
+
+/// Dashed: only robots sense them.
+void Picture::virtual_things() {
+    constexpr const char* kDashed =
+        "fill=\"#963282\" fill-opacity=\"0.12\" stroke=\"#963282\" stroke-width=\"1.2\" "
+        "stroke-dasharray=\"3 3\"";
+    for (const VirtualBody& body : virtual_bodies(world_.virtuals)) {
+        Shape shape = body.shape;
+        const auto way = std::find_if(objects_.begin(), objects_.end(),
+                                      [&](const auto& path) { return path.first == body.name; });
+        if (way != objects_.end()) {
+            const auto& last = way->second.back();
+            shape.place(last.x, last.y, last.heading);
+        }
+        canvas_.shape(shape, kDashed);
+        centred(shape, body.name);
+    }
+    for (const auto& lamp : world_.virtuals.lamps) {
+        canvas_.circle(lamp.x, lamp.y, 7, kDashed);
+        label(lamp.x, lamp.y, lamp.name, 12);
+    }
 }
 
 void Picture::centred(const Shape& shape, const std::string& name) {

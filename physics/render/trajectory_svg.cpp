@@ -18,7 +18,9 @@ void write_trajectory_svg(const World& world, const std::filesystem::path& direc
     const Paths objects = std::filesystem::exists(objects_file) ? read_paths(objects_file) : Paths{};
     const auto booths =
         world.booths.empty() ? std::vector<BoothColours>{} : read_booth_colours(directory / "tams.csv");
-    const std::string document = Picture(world, robots, objects, booths).draw();
+    const auto trails = world.virtuals.pheromones.empty() ? std::vector<TrailSquare>{}
+                                                          : read_trails(world, directory / "pheromones.csv");
+    const std::string document = Picture(world, robots, objects, booths, trails).draw();
     const auto file = directory / "trajectory.svg";
     std::FILE* out = new_file(file);
     const bool written = out != nullptr && std::fputs(document.c_str(), out) >= 0;

@@ -23,8 +23,10 @@ void RobotModel::store(std::size_t channel, const std::array<double, N>& values)
 }
 
 RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters& parameters)
-    : parameters_(parameters),
+    : name_(robot.name),
+      parameters_(parameters),
       ambient_light_(world.ambient_light),
+      lamps_(lamps_sensed_by(world, robot.name)),
       drives_{
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_left")),
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_right"))},
@@ -34,7 +36,7 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       proximity_(parameters.proximity),
       proximity_noise_(parameters.proximity, world.seed, robot.name),
       late_reflected_(parameters.proximity.age),
-      light_(parameters.light, parameters.proximity, world.ambient_light, world.lamps),
+      light_(parameters.light, parameters.proximity, world.ambient_light, lamps_),
       ground_(parameters.ground, world.arena.floor_grey, world.patches),
       late_greys_(parameters.ground.lag),
       late_speed_(kAccelerationWindow),
@@ -55,7 +57,8 @@ void RobotModel::light_the_floor() {
 
 void RobotModel::scene_changed(const World& world) {
     ambient_light_ = world.ambient_light;
-    light_.set_room(world.ambient_light, world.lamps);
+    lamps_ = lamps_sensed_by(world, name_);
+    light_.set_room(world.ambient_light, lamps_);
     ground_.set_floor(world.arena.floor_grey, world.patches);
     ears_.set_speakers(world.speakers);
     looked_around_ = true;  // the room light is part of a reading
@@ -154,11 +157,11 @@ void RobotModel::sense_light(const SensorView& view) {
     store(kAmbientChannel, light_.sense(view));
 }
 
-void RobotModel::look_down(const RobotState& state) {
+void RobotModel::look_down(const RobotState& state, std::span<const PheromoneField> trails) {
     if (felt_ground_)
         greys_.fill(*felt_ground_);
     else
-        greys_ = ground_.greys(state);
+        greys_ = ground_.greys(state, trails);
     over_ground_ = state;
 }
 

@@ -42,7 +42,7 @@ class RobotModel {
     /// These three when something moved: what the sensors look at is another.
     void look_around(const SensorView& view);
     void sense_light(const SensorView& view);
-    void look_down(const RobotState& state);
+    void look_down(const RobotState& state, std::span<const PheromoneField> trails = {});
     /// What the sensors say of it, and what changes by itself; once a step, after the others.
     void sense_each_step(const RobotState& state, double seconds);
 
@@ -83,8 +83,10 @@ class RobotModel {
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
 
+    std::string name_;
     Parameters parameters_;
     double ambient_light_;
+    std::vector<Lamp> lamps_;  // those that it senses
     std::array<WheelDrive, 2> drives_;
     std::array<double, 2> asked_angle_{};
     FloorMotion floor_motion_;

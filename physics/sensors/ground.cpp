@@ -72,6 +72,12 @@ double GroundRow::grey_at(double x, double y) const {
     return base_grey_;
 }
 
+/// Middle of what a sensor sees.
+Point GroundRow::spot(const RobotState& robot, double cosine, double sine, std::size_t sensor) const {
+    return {robot.x + cosine * parameters_.x - sine * parameters_.y[sensor],
+            robot.y + sine * parameters_.x + cosine * parameters_.y[sensor]};
+}
+
 std::array<double, kGroundSensors> GroundRow::greys(const RobotState& robot) const {
     const auto& p = parameters_;
     if (!near_a_patch(robot.x, robot.y)) return {base_mean_, base_mean_, base_mean_};
@@ -80,12 +86,25 @@ std::array<double, kGroundSensors> GroundRow::greys(const RobotState& robot) con
     const double reach = p.footprint / 2;
     std::array<double, kGroundSensors> greys{};
     for (std::size_t i = 0; i < kGroundSensors; ++i) {
-        const double x = robot.x + cosine * p.x - sine * p.y[i];
-        const double y = robot.y + sine * p.x + cosine * p.y[i];
+        const auto [x, y] = spot(robot, cosine, sine, i);
         greys[i] = mean_of({grey_at(x, y), grey_at(x + reach, y), grey_at(x - reach, y),
                             grey_at(x, y + reach), grey_at(x, y - reach)});
     }
     return greys;
+}
+
+std::array<double, kGroundSensors> GroundRow::greys(const RobotState& robot,
+                                                    std::span<const PheromoneField> trails) const {
+    auto seen = greys(robot);
+    if (trails.empty()) return seen;
+    const double cosine = std::cos(robot.heading);
+    const double sine = std::sin(robot.heading);
+    for (std::size_t i = 0; i < kGroundSensors; ++i) {
+        const auto [x, y] = spot(robot, cosine, sine, i);
+        for (const PheromoneField& trail : trails)
+            seen[i] = trail.over(seen[i], x, y);
+    }
+    return seen;
 }
 
 std::array<double, kGroundSensors> GroundRow::counts(const std::array<double, kGroundSensors>& greys,

@@ -5,6 +5,7 @@
 // Infra-red sees a coloured floor as grey of the same luminance.
 
 #include "physics/description/parameters.h"
+#include "physics/sensors/pheromone.h"
 #include "physics/sensors/sensor_view.h"
 
 #include <array>
@@ -28,6 +29,9 @@ class GroundRow {
     void set_floor(double base_grey, std::span<const Patch> patches);
     /// Mean grey under each sensor: left, centre, right.
     std::array<double, kGroundSensors> greys(const RobotState& robot) const;
+    /// The same with trails on it.
+    std::array<double, kGroundSensors> greys(const RobotState& robot,
+                                             std::span<const PheromoneField> trails) const;
     /// Noise-free counts over such greys, 0..saturation; of `robot` pitch and roll count.
     std::array<double, kGroundSensors> counts(const std::array<double, kGroundSensors>& greys,
                                               const RobotState& robot, const GroundMoment& now) const;
@@ -42,6 +46,7 @@ class GroundRow {
         double grey(double x, double y) const;
     };
     bool near_a_patch(double x, double y) const;
+    Point spot(const RobotState& robot, double cosine, double sine, std::size_t sensor) const;
     double grey_at(double x, double y) const;
 
     GroundParameters parameters_;

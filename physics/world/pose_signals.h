@@ -70,6 +70,16 @@ struct SceneSignals {
     }
 };
 
+/// Of virtual boards, to the infra-red medium alone: x, y, heading of each, from the last id downwards, so
+/// that they are in nobody's way.
+inline std::size_t virtual_board_signal(std::size_t board, std::size_t value) {
+    constexpr std::size_t kLast = 0xFFFE;
+    return kLast - (kPoseSignals * board + value);
+}
+inline bool is_virtual_board_signal(std::size_t id) {
+    return id > virtual_board_signal(kMostVirtualBoards - 1, kPoseSignals - 1) - 1;
+}
+
 /// The world publishes poses, and a medium is needed, when any robot carries a board.
 inline bool has_rab(const World& world) {
     return std::any_of(world.robots.begin(), world.robots.end(), [](const Robot& r) { return r.rab; });

@@ -75,11 +75,42 @@ Recorder::Recorder(const WorldModel& world)
       trajectory_(in_directory(world, "trajectory.csv"), "t_s,robot,x_m,y_m,theta_rad"),
       sensors_(in_directory(world, "sensors.csv"), sensors_header()) {
     std::remove(in_directory(world, "objects.csv").c_str());  // of an earlier run
+    std::remove(in_directory(world, "pheromones.csv").c_str());
+    if (!world.trails().empty())
+        trails_ = std::make_unique<CsvFile>(in_directory(world, "pheromones.csv"),
+                                            "t_s,pheromone,x_m,y_m,strength");
     write(world);
 }
 
 void Recorder::after_step(const WorldModel& world) {
     if (world.steps_done() % period_steps_ == 0) write(world);
+    for (const PheromoneField& trail : world.trails()) {
+        const auto every = std::llround(trail.description().record_every / kStepSeconds);
+        if (every > 0 && world.steps_done() % static_cast<std::uint64_t>(every) == 0)
+            write_trail(world, trail);
+    }
+}
+
+void Recorder::end(const WorldModel& world) {
+    for (const PheromoneField& trail : world.trails()) {
+        const auto every = std::llround(trail.description().record_every / kStepSeconds);
+        const bool written = every > 0 && world.steps_done() % static_cast<std::uint64_t>(every) == 0;
+        if (!written) write_trail(world, trail);
+    }
+}
+
+/// Squares that hold something to be seen: their middles.
+void Recorder::write_trail(const WorldModel& world, const PheromoneField& trail) {
+    constexpr double kSeen = 0.005;  // of full: a count or two of a ground sensor
+    for (std::size_t row = 0; row < trail.rows(); ++row)
+        for (std::size_t column = 0; column < trail.columns(); ++column) {
+            const double value = trail.value(column, row);
+            if (value < kSeen) continue;
+            const Point point = trail.middle(column, row);
+            trails_->row(fmt::format("{:.3f},{},{:.4f},{:.4f},{:.3f}", world.seconds(),
+                                     trail.description().name, tidy(point.x), tidy(point.y), value));
+        }
+    trails_->flush();
 }
 
 void Recorder::write(const WorldModel& world) {
@@ -102,7 +133,7 @@ void Recorder::write(const WorldModel& world) {
     if (objects_) objects_->flush();
 }
 
-/// Movable things, and fixed ones that have been moved or added by hand; none that was taken away.
+/// Movable things, and fixed or virtual ones that have been moved or added by hand; none that was taken away.
 void Recorder::write_objects(const WorldModel& world) {
     for (std::size_t i = 0; i < world.object_names().size(); ++i)
         if (world.object_shape(i).height > 0.0)
@@ -113,6 +144,10 @@ void Recorder::write_objects(const WorldModel& world) {
         if (shape.height > 0.0)
             object_row(world, world.fixed_names()[i], shape.x, shape.y, std::atan2(shape.sine, shape.cosine));
     }
+    for (const VirtualBody& body : world.virtual_bodies())
+        if (body.by_hand)
+            object_row(world, body.name, body.shape.x, body.shape.y,
+                       std::atan2(body.shape.sine, body.shape.cosine));
 }
 
 void Recorder::object_row(const WorldModel& world, const std::string& name, double x, double y,

@@ -1,6 +1,7 @@
 #pragma once
-// What a run leaves on disk about the world: trajectory.csv, sensors.csv and, where things move or are moved,
-// objects.csv. Every row is flushed as it is written, so that a run that dies keeps its data.
+// What a run leaves on disk about the world: trajectory.csv, sensors.csv, where things move or are moved
+// objects.csv, and where robots lay trails pheromones.csv. Every row is flushed as it is written, so that a
+// run that dies keeps its data.
 
 #include "physics/world/world_model.h"
 
@@ -41,16 +42,20 @@ class Recorder {
     explicit Recorder(const WorldModel& world);
     /// After each step; writes when the period has passed.
     void after_step(const WorldModel& world);
+    /// What trails are left.
+    void end(const WorldModel& world);
 
   private:
     void write(const WorldModel& world);
     void write_objects(const WorldModel& world);
+    void write_trail(const WorldModel& world, const PheromoneField& trail);
     void object_row(const WorldModel& world, const std::string& name, double x, double y, double heading);
 
     std::uint64_t period_steps_;
     CsvFile trajectory_;
     CsvFile sensors_;
     std::unique_ptr<CsvFile> objects_;  // from the first one on
+    std::unique_ptr<CsvFile> trails_;   // where there are any
 };
 
 }  // namespace puckloop::physics

@@ -12,6 +12,8 @@ namespace {
 // Sensors look again when something moved by more than this: far below one count anywhere.
 constexpr double kSeenShift = 2e-6;  // m
 constexpr double kSeenTurn = 5e-5;   // rad
+// Steps between two times at which robots lay trails: at their speed a tenth of a square of 1 cm.
+constexpr std::uint64_t kTrailSteps = 10;
 
 World checked_description(World description) {
     check(description);
@@ -35,7 +37,10 @@ WorldModel::WorldModel(World description)
       parameters_(with({}, description_.parameters)),
       fixed_(fixed_shapes(description_)),
       fixed_names_(physics::fixed_names(description_)),
-      dynamics_(parameters_, fixed_) {
+      dynamics_(parameters_, fixed_),
+      virtual_bodies_(physics::virtual_bodies(description_.virtuals)) {
+    for (const Pheromone& pheromone : description_.virtuals.pheromones)
+        trails_.emplace_back(pheromone, description_);
     add_bodies();
     look();
 }
@@ -65,6 +70,11 @@ void WorldModel::add_object(const Shape& shape, const std::string& name, double 
 
 void WorldModel::wheel(std::size_t robot, Side side, double steps, double seconds) {
     robots_[robot].drive(side).step_to(steps, seconds);
+}
+
+void WorldModel::board_signal(std::size_t robot, std::uint16_t id, double value) {
+    for (PheromoneField& trail : trails_)
+        trail.board_signal(robot, id, value);
 }
 
 void WorldModel::step() {
@@ -114,6 +124,7 @@ void WorldModel::look() {
     for (std::size_t i = 0; i < robots_.size(); ++i)
         look_around(i);
     done(StepPart::Around);
+    renew_trails();
     for (std::size_t i = 0; i < robots_.size(); ++i)
         look_down(i);
     done(StepPart::Ground);
@@ -122,6 +133,20 @@ void WorldModel::look() {
         robots_[i].sense_each_step(dynamics_.robot(i), seconds());
     done(StepPart::Readings);
     scene_changed_ = false;
+    trails_changed_ = false;
+}
+
+/// Robots on the floor lay; what lies there evaporates and spreads.
+void WorldModel::renew_trails() {
+    if (trails_.empty() || steps_done_ == 0 || steps_done_ % kTrailSteps != 0) return;
+    for (PheromoneField& trail : trails_) {
+        for (std::size_t i = 0; i < robots_.size(); ++i)
+            if (!robots_[i].lifted() && trail.laid_by(i))
+                trail.lay(dynamics_.robot(i).x, dynamics_.robot(i).y,
+                          static_cast<double>(kTrailSteps) * kStepSeconds);
+        trail.pass(kTrailSteps);
+    }
+    trails_changed_ = true;
 }
 
 void WorldModel::refresh_neighbours() {
@@ -148,7 +173,7 @@ bool WorldModel::neighbour_moved(std::size_t robot) const {
 
 void WorldModel::look_at_lamps(std::size_t index, bool any_moved) {
     auto& robot = robots_[index];
-    const bool lamps = !description_.lamps.empty();
+    const bool lamps = !description_.lamps.empty() || !description_.virtuals.lamps.empty();
     if (!scene_changed_ && !robot.light().varies_with_time() && !(lamps && any_moved)) return;
     view_.clear();
     if (lamps && !robot.lifted()) {
@@ -179,6 +204,9 @@ void WorldModel::look_around(std::size_t index) {
             see(fixed_[i]);
         for (const std::uint32_t i : near_.moving(index))
             see(moving_[i].shape);
+        const std::string& name = description_.robots[index].name;
+        for (const VirtualBody& body : virtual_bodies_)
+            if (body.sensed_by(name)) see(body.shape);
     }
     const RobotState seen{.x = own.x, .y = own.y, .heading = own.heading};
     robot.look_around({seen, view_, seconds()});
@@ -189,9 +217,9 @@ void WorldModel::look_down(std::size_t index) {
     auto& tilt = looked_tilt_[index];
     const bool tilted =
         std::abs(state.pitch - tilt[0]) > kSeenTurn || std::abs(state.roll - tilt[1]) > kSeenTurn;
-    if (!scene_changed_ && !moving_[index].moved && !tilted) return;
+    if (!scene_changed_ && !trails_changed_ && !moving_[index].moved && !tilted) return;
     tilt = {state.pitch, state.roll};
-    robots_[index].look_down(state);
+    robots_[index].look_down(state, trails_);
 }
 
 void WorldModel::look_at_barriers() {

@@ -21,6 +21,8 @@ class WorldModel {
 
     /// A motor counter changed at `seconds`, which lies in the step to come.
     void wheel(std::size_t robot, Side side, double steps, double seconds);
+    /// An output of a robot's board changed: LEDs by which it lays a trail.
+    void board_signal(std::size_t robot, std::uint16_t id, double value);
     /// One millisecond on; channels are those of the new state. The same as the two that follow.
     void step();
     void move_bodies();
@@ -48,6 +50,10 @@ class WorldModel {
     std::span<const std::string> object_names() const { return object_names_; }
     const ObjectState& object(std::size_t index) const { return dynamics_.object(index); }
     const Dynamics& dynamics() const { return dynamics_; }
+    /// Trails on the floor, in the order of the description.
+    std::span<const PheromoneField> trails() const { return trails_; }
+    /// What only robots' sensors meet, as it is now.
+    std::span<const VirtualBody> virtual_bodies() const { return virtual_bodies_; }
     /// Things that do not move by themselves, the arena's walls first: names, and as sensors see them (height
     /// 0: taken away).
     std::span<const std::string> fixed_names() const { return fixed_names_; }
@@ -76,6 +82,7 @@ class WorldModel {
     void refresh_neighbours();
     void look_around(std::size_t robot);
     void look_at_lamps(std::size_t robot, bool any_moved);
+    void renew_trails();
     void look_down(std::size_t robot);
     void look_at_barriers();
     bool neighbour_moved(std::size_t robot) const;
@@ -93,10 +100,13 @@ class WorldModel {
     std::vector<std::array<double, 2>> looked_tilt_;
     std::vector<BoothModel> booths_;
     std::vector<std::vector<std::size_t>> in_booths_;  // fixed things that might interrupt a beam
-    std::vector<const Shape*> view_;                   // scratch
+    std::vector<VirtualBody> virtual_bodies_;
+    std::vector<PheromoneField> trails_;
+    std::vector<const Shape*> view_;  // scratch
     std::uint64_t steps_done_ = 0;
     StepObserver* observer_ = nullptr;
-    bool scene_changed_ = true;  // since the sensors last looked
+    bool scene_changed_ = true;    // since the sensors last looked
+    bool trails_changed_ = false;  // likewise
 };
 
 }  // namespace puckloop::physics

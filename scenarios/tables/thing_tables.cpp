@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace puckloop::scenarios {
 
 namespace {
@@ -117,6 +119,62 @@ void read_patch(Reader& reader, physics::Patch& patch) {
         patch.length = size[0];
         patch.width = size[1];
     }
+}
+
+void read_virtual_wall(Reader& reader, physics::Virtual<physics::Wall>& wall) {
+    read_wall(reader, wall);
+    wall.robots = reader.texts("robots");
+}
+
+void read_virtual_box(Reader& reader, physics::Virtual<physics::Box>& box) {
+    if (reader.has("mass")) reader.fail("mass", "a virtual box has none: nothing pushes it");
+    read_box(reader, box);
+    box.robots = reader.texts("robots");
+}
+
+void read_virtual_cylinder(Reader& reader, physics::Virtual<physics::Cylinder>& cylinder) {
+    if (reader.has("mass")) reader.fail("mass", "a virtual cylinder has none: nothing pushes it");
+    read_cylinder(reader, cylinder);
+    cylinder.robots = reader.texts("robots");
+}
+
+void read_virtual_lamp(Reader& reader, physics::Virtual<physics::Lamp>& lamp) {
+    read_lamp(reader, lamp);
+    lamp.robots = reader.texts("robots");
+}
+
+void read_virtual_board(Reader& reader, physics::VirtualBoard& board) {
+    const auto position = reader.quantities("position", Dimension::Length, 2);
+    board.x = position[0];
+    board.y = position[1];
+    board.heading = reader.quantity("heading", Dimension::Angle, board.heading);
+    constexpr double kHighest = 255;
+    for (const double byte : reader.bare_numbers("data")) {
+        if (!(byte >= 0 && byte <= kHighest) || byte != std::floor(byte))
+            reader.fail("data", fmt::format("{} is not a byte", byte), "1 to 4 whole numbers, 0 to 255");
+        board.data.push_back(static_cast<std::uint8_t>(byte));
+    }
+    if (board.data.empty() || board.data.size() > 4)
+        reader.fail("data", fmt::format("{} bytes", board.data.size()), "1 to 4 whole numbers, 0 to 255");
+    board.power = reader.quantity("power", Dimension::Number, board.power);
+    board.begin = reader.quantity("begin", Dimension::Time, board.begin);
+    board.every = reader.quantity("every", Dimension::Time, board.every);
+    board.jitter = reader.quantity("jitter", Dimension::Time, board.jitter);
+}
+
+void read_pheromone(Reader& reader, physics::Pheromone& pheromone) {
+    pheromone.robots = reader.texts("robots");
+    if (reader.has("led"))
+        pheromone.led = reader.choice(
+            "led", "",
+            {"led0", "led1", "led2", "led3", "led4", "led5", "led6", "led7", "led_front", "led_body"});
+    pheromone.radius = reader.quantity("radius", Dimension::Length, pheromone.radius);
+    pheromone.fill_time = reader.quantity("fill_time", Dimension::Time, pheromone.fill_time);
+    pheromone.half_life = reader.quantity("half_life", Dimension::Time, pheromone.half_life);
+    pheromone.diffusion = reader.quantity("diffusion", Dimension::Number, pheromone.diffusion);
+    pheromone.grey = reader.quantity("grey", Dimension::Ratio, pheromone.grey);
+    pheromone.cell = reader.quantity("cell", Dimension::Length, pheromone.cell);
+    pheromone.record_every = reader.quantity("record_every", Dimension::Time, pheromone.record_every);
 }
 
 }  // namespace puckloop::scenarios

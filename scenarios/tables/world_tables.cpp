@@ -105,6 +105,12 @@ physics::World read_world(Reader& top) {
     read_each(top, "lamp", world.lamps, read_lamp);
     read_each(top, "speaker", world.speakers, read_speaker);
     read_each(top, "floor_patch", world.patches, read_patch);
+    read_each(top, "virtual_wall", world.virtuals.walls, read_virtual_wall);
+    read_each(top, "virtual_box", world.virtuals.boxes, read_virtual_box);
+    read_each(top, "virtual_cylinder", world.virtuals.cylinders, read_virtual_cylinder);
+    read_each(top, "virtual_lamp", world.virtuals.lamps, read_virtual_lamp);
+    read_each(top, "virtual_board", world.virtuals.boards, read_virtual_board);
+    read_each(top, "pheromone", world.virtuals.pheromones, read_pheromone);
     if (const TomlValue* table = top.table("light")) {
         Reader reader(top.file(), "light", *table);
         world.ambient_light = reader.quantity("ambient", Dimension::Ratio, world.ambient_light);

@@ -242,6 +242,16 @@ export class ArenaView {
       g.stroke();
       this.label(thing.name, pose.x, pose.y, 0);
     }
+    g.setLineDash([3, 3]);
+    g.strokeStyle = colours.virtual;
+    for (const thing of arena.virtuals || []) {
+      const path = this.run.paths.find((one) => !one.robot && one.name === thing.name);
+      const pose = (path && poseAt(path, this.run.now)) || thing;
+      this.shape(thing, { ...pose, heading: pose.heading || 0 });
+      g.stroke();
+      this.label(thing.name, pose.x, pose.y, 0);
+    }
+    g.setLineDash([]);
     for (const [list, colour] of [[arena.lamps, colours.lamp], [arena.speakers, colours.ircom]])
       for (const one of list) {
         g.beginPath();

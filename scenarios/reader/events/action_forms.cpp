@@ -18,7 +18,8 @@ constexpr ActionKey kRemote[]{{"key", Integer}, {"address", Integer}, {"hold"}};
 constexpr ActionForm kForms[]{
     {"move", "move OBJECT [to X, Y | by X, Y] [heading ANGLE] [over TIME]",
      "moves a thing; a robot is carried there", kMove},
-    {"add", "add wall|box|cylinder|lamp|speaker|floor_patch name NAME KEY VALUE...",
+    {"add", "add wall|box|cylinder|lamp|speaker|floor_patch|virtual_wall|virtual_box|virtual_cylinder|virtual_lamp name NAME\n"
+     "KEY VALUE...",
      "adds a thing; keys as in its table of a scenario", {}},
     {"remove", "remove OBJECT", "takes a thing away", {}},
     {"lift", "lift ROBOT", "holds a robot in the air: wheels turn freely, nothing is under it", {}},
@@ -42,9 +43,19 @@ constexpr ActionKey kLamp[]{{"name"}, {"centre", List}, {"height"}, {"intensity"
 constexpr ActionKey kSpeaker[]{{"name"}, {"position", List}, {"level"}, {"height"}, {"on"}, {"off"}, {"duration"}, {"every"},
                                {"times", Integer}, {"wave"}, {"tone"}, {"sweep_to"}};
 constexpr ActionKey kPatch[]{{"name"}, {"centre", List}, {"grey"}, {"shape"}, {"size", List}, {"heading"}, {"radius"}};
+// Which robots sense it comes after the keys of the thing itself.
+constexpr ActionKey kVirtualWall[]{{"name"}, {"from", List}, {"to", List}, {"thickness"}, {"height"}, {"reflectivity"},
+                                   {"robots", List}};
+constexpr ActionKey kVirtualBox[]{{"name"}, {"centre", List}, {"size", List}, {"heading"}, {"reflectivity"},
+                                  {"robots", List}};
+constexpr ActionKey kVirtualCylinder[]{{"name"}, {"centre", List}, {"radius"}, {"height"}, {"reflectivity"},
+                                       {"robots", List}};
+constexpr ActionKey kVirtualLamp[]{{"name"}, {"centre", List}, {"height"}, {"intensity"}, {"robots", List}};
 
 constexpr ThingForm kThings[]{{"wall", kWall}, {"box", kBox}, {"cylinder", kCylinder},
-                              {"lamp", kLamp}, {"speaker", kSpeaker}, {"floor_patch", kPatch}};
+                              {"lamp", kLamp}, {"speaker", kSpeaker}, {"floor_patch", kPatch},
+                              {"virtual_wall", kVirtualWall}, {"virtual_box", kVirtualBox},
+                              {"virtual_cylinder", kVirtualCylinder}, {"virtual_lamp", kVirtualLamp}};
 // clang-format on
 
 }  // namespace

@@ -69,6 +69,11 @@ void read_new_thing(Reader& reader, Action& action, int line) {
     if (kind == "lamp") read(things.lamps, read_lamp);
     if (kind == "speaker") read(things.speakers, read_speaker);
     if (kind == "floor_patch") read(things.patches, read_patch);
+    physics::VirtualThings& virtuals = things.virtuals;
+    if (kind == "virtual_wall") read(virtuals.walls, read_virtual_wall);
+    if (kind == "virtual_box") read(virtuals.boxes, read_virtual_box);
+    if (kind == "virtual_cylinder") read(virtuals.cylinders, read_virtual_cylinder);
+    if (kind == "virtual_lamp") read(virtuals.lamps, read_virtual_lamp);
 }
 
 void read_property(Reader& reader, Action& action) {

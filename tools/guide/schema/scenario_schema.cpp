@@ -46,6 +46,22 @@ constexpr SchemaKey kCylinder[]{
 constexpr SchemaKey kLamp[]{
     {"name", "text", ""}, {"centre", "lengths2", ""}, {"height", "length", "of the bulb; default 5 cm"},
     {"intensity", "ratio", "default 1"}};
+constexpr SchemaKey kWhoSenses[]{{"robots", "texts", "who senses it; default all"}};
+constexpr SchemaKey kVirtualBoard[]{
+    {"name", "text", ""}, {"position", "lengths2", ""}, {"heading", "angle", "where the front of its ring looks"},
+    {"data", "any", "1 to 4 bytes of payload, the highest first"},
+    {"power", "number", "potentiometer byte, 0 (furthest) to 255; default 115"},
+    {"begin", "time", "of the first frame"}, {"every", "time", "from one frame to the next; default 100 ms"},
+    {"jitter", "time", "standard deviation of a frame's begin; default 2 ms"}};
+constexpr SchemaKey kPheromone[]{
+    {"name", "text", ""}, {"robots", "texts", "who lays it; default all"},
+    {"led", "text", "laid while this LED is lit: led0 to led7, led_front or led_body"},
+    {"radius", "length", "of what a robot lays; default 2 cm"},
+    {"fill_time", "time", "under a robot until it is full; default 100 ms"},
+    {"half_life", "time", "default 30 s; 0: it stays"}, {"diffusion", "number", "m2/s; default 0"},
+    {"grey", "ratio", "the floor's, where it is full; default 0"},
+    {"cell", "length", "side of the squares that it is computed in; default 1 cm"},
+    {"record_every", "time", "rows of pheromones.csv; without it at the end alone"}};
 constexpr SchemaKey kSpeaker[]{
     {"name", "text", ""}, {"position", "lengths2", ""}, {"level", "number", "volume in counts of a plain microphone 10 cm before it"},
     {"height", "length", "default 3 cm"}, {"on", "time", "when it begins"}, {"off", "time", "when it ends"},
@@ -326,6 +342,22 @@ ordered_json scenario_schema() {
     properties["lamp"] = list_schema(table_schema("a lamp", kLamp, {"centre"}));
     properties["speaker"] = list_schema(table_schema("a loudspeaker", kSpeaker, {"position", "level"}));
     properties["floor_patch"] = list_schema(table_schema("paper on the floor", kPatch, {"centre"}));
+    const auto add_virtual = [&](const char* name, const char* about, std::span<const SchemaKey> keys,
+                                 std::vector<std::string> required) {
+        ordered_json table = table_schema(about, keys, std::move(required));
+        table["properties"].erase("mass");
+        add_keys(table, kWhoSenses);
+        properties[name] = list_schema(std::move(table));
+    };
+    add_virtual("virtual_wall", "what only proximity sensors meet (docs/virtual.md)", kWall, {"from", "to"});
+    add_virtual("virtual_box", "likewise", kBox, {"centre", "size"});
+    add_virtual("virtual_cylinder", "likewise", kCylinder, {"centre", "radius"});
+    add_virtual("virtual_lamp", "what only light sensors see", kLamp, {"centre"});
+    properties["virtual_board"] =
+        list_schema(table_schema("frames of a range-and-bearing board without a robot (docs/virtual.md)",
+                                 kVirtualBoard, {"position", "data"}));
+    properties["pheromone"] =
+        list_schema(table_schema("a trail that ground sensors see (docs/virtual.md)", kPheromone));
     properties["light"] = table_schema("the room's light", kLight);
     properties["parameters"] = parameters_schema();
     properties["robot"] = list_schema(robot_schema());
