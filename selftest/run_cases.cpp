@@ -1,6 +1,7 @@
 #include "selftest/run_cases.h"
 
 #include "gap/pipeline/analyse.h"
+#include "gap/reading/read_experiment.h"
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include "gap/begin/expected_time.h"
 #include "gap/data/problems.h"
 #include "gap/fit/study.h"
+#include "gap/reading/read_experiment.h"
 #include "gap/stats/series.h"
 #include "gap/verdict/sentences.h"
 

@@ -6,8 +6,6 @@
 #include "gap/data/csv.h"
 #include "gap/data/problems.h"
 #include "gap/data/wheel_units.h"
-#include "gap/sync/sync.h"
-#include "gap/validate/checks.h"
 #include "scenarios/values/reader.h"
 
 #include <fmt/ranges.h>
@@ -305,6 +303,8 @@ TomlValue read_description(const std::string& file) {
     return read_toml(file);
 }
 
+}  // namespace
+
 Experiment read_folder(const std::filesystem::path& folder, Problems& problems) {
     std::error_code ignored;
     const auto type = std::filesystem::status(folder, ignored).type();
@@ -363,23 +363,6 @@ Experiment read_folder(const std::filesystem::path& folder, Problems& problems) 
         experiment.caution("column \"{}\" has three digits behind every comma in {} of {} files: read as "
                            "decimals (1,200 is 1.2), not as thousands",
                            name, files, runs.size());
-    return experiment;
-}
-
-}  // namespace
-
-Experiment read_experiment(const std::filesystem::path& folder) {
-    Problems problems;
-    Experiment experiment = survey_experiment(folder, problems);
-    if (!problems.empty()) throw InputError(problems.first());
-    align_times(experiment);
-    find_pauses(experiment);
-    return experiment;
-}
-
-Experiment survey_experiment(const std::filesystem::path& folder, Problems& problems) {
-    Experiment experiment = read_folder(folder, problems);
-    if (!experiment.runs.empty()) check(experiment, problems);
     return experiment;
 }
 

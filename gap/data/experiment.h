@@ -95,15 +95,9 @@ struct Experiment {
     throw InputError((experiment.folder / "experiment.toml").string(), "", problem, expected);
 }
 
-/// Reads `folder`/experiment.toml and the CSV files it names, converts units, and looks for what cannot be
-/// used: wrong units, swapped columns, a clock that jumps, constant columns, missing truth, NaN, two robots
-/// mixed. What can be used with care becomes a caution. Throws InputError with file and line for the first
-/// problem.
-Experiment read_experiment(const std::filesystem::path& folder);
-
-/// The same, but every problem found goes to `problems` and reading goes on behind it, as far as it makes
-/// sense; clocks are not synchronised, so that it is done at once. Throws where nothing can be read at all.
-Experiment survey_experiment(const std::filesystem::path& folder, Problems& problems);
+/// Reads `folder`/experiment.toml and the CSV files it names and converts units; nothing is judged. Problems
+/// of files and columns go to `problems`; throws InputError where nothing can be read at all.
+Experiment read_folder(const std::filesystem::path& folder, Problems& problems);
 
 std::string_view kind_name(Kind kind);  ///< "proximity", ...
 inline constexpr const char* kKindNames =

@@ -1,7 +1,7 @@
 #include "gap/decide/confirm.h"
 
-#include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/stats/series.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "gap/decide/decide.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
 
 #include <algorithm>
 

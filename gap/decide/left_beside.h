@@ -2,8 +2,8 @@
 // Goodness of fit, cause by cause. A strong cause of one observable must not carry a weak one of another into
 // the verdict: each has to explain most of what is wrong where it acts.
 
+#include "gap/findings/findings.h"
 #include "gap/fit/select.h"
-#include "gap/verdict/verdict.h"
 
 #include <vector>
 

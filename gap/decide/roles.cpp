@@ -1,10 +1,10 @@
 #include "gap/decide/roles.h"
 
 #include "gap/decide/no_mechanism.h"
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/pushes.h"
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit/noise.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/wander.h"

@@ -3,8 +3,8 @@
 // one that only scatters gains by what comes anew at each reading, not by a mean that the model lacks, which
 // larger errors would cover as well.
 
+#include "gap/findings/findings.h"
 #include "gap/fit/study.h"
-#include "gap/verdict/verdict.h"
 
 #include <cstdint>
 #include <functional>

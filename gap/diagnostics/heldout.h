@@ -2,9 +2,9 @@
 // What the chosen effects gain on rows that were not fitted: errors and log scores before and after, with
 // intervals over blocks.
 
+#include "gap/findings/findings.h"
 #include "gap/fit/select.h"
 #include "gap/fit/study.h"
-#include "gap/verdict/verdict.h"
 
 #include <cstdint>
 #include <vector>

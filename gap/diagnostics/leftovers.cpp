@@ -1,7 +1,7 @@
 #include "gap/diagnostics/leftovers.h"
 
-#include "gap/decide/thresholds.h"
-#include "gap/diagnostics/residual_structure.h"
+#include "gap/evidence/thresholds.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/stats/robust.h"
 
 #include <algorithm>

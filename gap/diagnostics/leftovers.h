@@ -2,8 +2,8 @@
 // What is left after the best model: the structures that chance does not explain.
 
 #include "gap/data/experiment.h"
+#include "gap/findings/findings.h"
 #include "gap/models/model.h"
-#include "gap/verdict/verdict.h"
 
 #include <cstdint>
 #include <string>

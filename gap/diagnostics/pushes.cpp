@@ -1,7 +1,7 @@
 #include "gap/diagnostics/pushes.h"
 
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/taken_back.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit/filter.h"
 #include "gap/residual_model/free_form_cells.h"
 #include "gap/stats/exchange.h"

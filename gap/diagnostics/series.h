@@ -1,8 +1,8 @@
 #pragma once
 // Measured, simulated before and after, and what is left: row by row, for tests, pictures and the verdict.
 
+#include "gap/findings/findings.h"
 #include "gap/fit/fit.h"
-#include "gap/verdict/verdict.h"
 
 #include <vector>
 

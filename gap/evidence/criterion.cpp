@@ -1,6 +1,6 @@
 #include "gap/evidence/criterion.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // runs that had no part in it. In each fold causes' numbers are fitted and the term is chosen and learnt on
 // the other runs only.
 
+#include "gap/findings/extension.h"
 #include "gap/fit/study.h"
-#include "gap/verdict/extension.h"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #include "gap/fit/noise.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/stats/robust.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "gap/fit/select.h"
 
-#include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit/parallel.h"
 #include "gap/stats/series.h"
 

@@ -4,12 +4,12 @@
 // that carry over, and such noise jumps by itself. How far errors scatter that carry over is taken from
 // batches of rows against their neighbours.
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
+#include "gap/findings/quantities.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
-#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 #include "gap/fit_test/run_differences.h"
 
 #include "gap/evidence/criterion.h"
+#include "gap/findings/quantities.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tails.h"
-#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "gap/fit_test/wander.h"
 
-#include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
+#include "gap/evidence/thresholds.h"
+#include "gap/findings/quantities.h"
 #include "gap/fit/noise.h"
-#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 // is over that of the same fit with both forbidden: by so many nats chance is excluded
 // (gap/evidence/criterion.h).
 
+#include "gap/findings/findings.h"
 #include "gap/fit/study.h"
-#include "gap/verdict/verdict.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 #include "gap/identify/counts.h"
 
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
+#include "gap/evidence/thresholds.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "gap/identify/known.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
+#include "gap/findings/quantities.h"
 #include "gap/fit/intervals.h"
-#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 

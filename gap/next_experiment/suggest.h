@@ -1,8 +1,8 @@
 #pragma once
 // The next experiment: the one whose outcome the remaining rivals disagree about most.
 
+#include "gap/findings/findings.h"
 #include "gap/fit/select.h"
-#include "gap/verdict/verdict.h"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
+#include "gap/findings/extension.h"
 #include "gap/overlay/overlay_parts.h"
-#include "gap/verdict/extension.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

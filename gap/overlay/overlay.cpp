@@ -2,9 +2,9 @@
 // takes, [measurement] what belongs to the measuring chain or has no counterpart in a run; `run` says that it
 // passes over it.
 
+#include "gap/overlay/overlay.h"
 #include "gap/data/columns.h"
 #include "gap/overlay/overlay_parts.h"
-#include "gap/pipeline/analyse.h"
 #include "physics/description/parameters.h"
 #include "scenarios/tables/world_tables.h"
 

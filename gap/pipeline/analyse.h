@@ -19,8 +19,4 @@ struct Options {
 
 Verdict analyse(const Experiment& experiment, const Options& options = {});
 
-/// The overlay of a verdict's causes as TOML: [parameters] for `puckloop run --model`, [measurement] for what
-/// belongs to the measuring chain.
-std::string overlay_toml(const Experiment& experiment, const Verdict& verdict);
-
 }  // namespace puckloop::gap

@@ -1,6 +1,6 @@
 #include "gap/pipeline/choose.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit/intervals.h"
 #include "gap/stats/series.h"
 

@@ -1,8 +1,8 @@
 #include "gap/pipeline/describe.h"
 
 #include "gap/decide/decide.h"
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/extension/extend.h"
 #include "gap/fit/intervals.h"
 #include "gap/next_experiment/suggest.h"

@@ -1,8 +1,8 @@
 #include "gap/pipeline/diagnose.h"
 
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/leftovers.h"
 #include "gap/diagnostics/series.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/wander.h"
 #include "gap/predictive/check.h"

@@ -2,8 +2,8 @@
 
 #include "gap/decide/no_mechanism.h"
 #include "gap/decide/roles.h"
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit_test/wander.h"
 
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 #include "gap/predictive/check.h"
 
-#include "gap/diagnostics/residual_structure.h"
 #include "gap/fit/likelihood.h"
 #include "gap/fit/parallel.h"
 #include "gap/predictive/discrepancies.h"
-#include "gap/predictive/main_covariates.h"
 #include "gap/predictive/posterior.h"
 #include "gap/predictive/replicate.h"
+#include "gap/residuals/main_covariates.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/stats/exchange.h"
 
 #include <fmt/format.h>

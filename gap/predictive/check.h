@@ -2,8 +2,8 @@
 // Posterior-predictive checks of a fit: data replicated from it against what was measured, by discrepancies
 // declared beforehand. The discrepancies know no effect.
 
+#include "gap/findings/predictive.h"
 #include "gap/fit/study.h"
-#include "gap/predictive/predictive.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "gap/predictive/discrepancies.h"
 
 #include "gap/diagnostics/leftovers.h"
-#include "gap/predictive/main_covariates.h"
+#include "gap/residuals/main_covariates.h"
 #include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"

@@ -2,8 +2,8 @@
 // The discrepancies of a posterior-predictive check: curves of one observable's residuals, at places that the
 // measured residuals fix.
 
+#include "gap/findings/predictive.h"
 #include "gap/models/model.h"
-#include "gap/predictive/predictive.h"
 #include "gap/stats/structure.h"
 
 #include <functional>

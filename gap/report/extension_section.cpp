@@ -1,9 +1,9 @@
 #include "base/chart.h"
 #include "base/svg.h"
-#include "gap/predictive/main_covariates.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"
+#include "gap/residuals/main_covariates.h"
 
 #include <fmt/format.h>
 

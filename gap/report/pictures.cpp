@@ -1,8 +1,8 @@
 #include "gap/report/pictures.h"
 
 #include "base/chart.h"
-#include "gap/diagnostics/residual_structure.h"
-#include "gap/predictive/main_covariates.h"
+#include "gap/residuals/main_covariates.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/stats/bootstrap.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tests.h"

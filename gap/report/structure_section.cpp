@@ -1,9 +1,9 @@
 // Noise floor and structure tests of every observable.
 
 #include "base/svg.h"
-#include "gap/diagnostics/residual_structure.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/robust.h"
 

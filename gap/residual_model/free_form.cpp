@@ -1,14 +1,14 @@
 #include "gap/residual_model/free_form.h"
 
 #include "base/random.h"
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
+#include "gap/findings/quantities.h"
 #include "gap/fit/study.h"
 #include "gap/residual_model/free_form_cells.h"
 #include "gap/residual_model/sum_form.h"
 #include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
-#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 

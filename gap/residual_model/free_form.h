@@ -3,8 +3,8 @@
 // their pairs, what they were lately, and the place in the run. It comes last, is reported as unexplained,
 // and names nothing.
 
+#include "gap/findings/findings.h"
 #include "gap/fit/fit.h"
-#include "gap/verdict/verdict.h"
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 #include "gap/residual_model/free_form_cells.h"
 
-#include "gap/diagnostics/residual_structure.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/series.h"

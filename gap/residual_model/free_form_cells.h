@@ -3,8 +3,8 @@
 // a covariate was in the rows before, and of the place in the run.
 
 #include "gap/data/experiment.h"
+#include "gap/findings/findings.h"
 #include "gap/stats/boosting.h"
-#include "gap/verdict/verdict.h"
 
 #include <vector>
 

@@ -1,13 +1,13 @@
 #include "gap/residual_model/sum_form.h"
 
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
+#include "gap/findings/quantities.h"
 #include "gap/fit/likelihood.h"
 #include "gap/fit/study.h"
 #include "gap/fit/sum_response.h"
 #include "gap/stats/parts.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/series.h"
-#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 // follows what they add up to.
 
 #include "gap/data/experiment.h"
+#include "gap/findings/findings.h"
 #include "gap/fit/fit.h"
 #include "gap/stats/boosting.h"
-#include "gap/verdict/verdict.h"
 
 #include <cstdint>
 #include <vector>

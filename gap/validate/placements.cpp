@@ -1,7 +1,7 @@
 #include "gap/validate/placements.h"
 
 #include "gap/data/columns.h"
-#include "gap/diagnostics/residual_structure.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"

@@ -2,7 +2,7 @@
 // Readings repeated at one placement share its error. Is that error larger than the repeats' scatter?
 
 #include "gap/data/experiment.h"
-#include "gap/verdict/verdict.h"
+#include "gap/findings/findings.h"
 
 #include <string>
 

@@ -13,8 +13,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostListed = 10;  // values that fit as well, in words
-constexpr double kDegree = 57.29577951308232;
-constexpr std::string_view kLogarithm = "ln ";  // a unit of logarithms begins so
 
 std::string listed(const std::vector<std::string>& words, const char* last) {
     std::string text;
@@ -65,23 +63,6 @@ std::string identify_sentence(const std::vector<Suggestion>& suggestions) {
 }
 
 }  // namespace
-
-std::string quantity(double value, const std::string& unit, int more_digits, double like) {
-    const double size = std::abs(std::isnan(like) ? value : like);
-    const int three = 3 + more_digits, four = 4 + more_digits;
-    if (unit == "m" && size < 1) return fmt::format("{:.{}g} mm", value * 1e3, four);
-    if (unit == "s" && size < 1) return fmt::format("{:.{}g} ms", value * 1e3, four);
-    if (unit == "rad" && size < 7) return fmt::format("{:.{}g} deg", value * kDegree, three);
-    if (unit.starts_with(kLogarithm)) return fmt::format("a factor of {:.{}g}", std::exp(value), four);
-    if (unit == kShare) return fmt::format("{:.{}g} %", value * 100, three);
-    if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.{}g} %", value * 100, three);
-    return fmt::format("{:.{}g}{}", value, four, unit_suffix(unit));
-}
-
-std::string change(double value, const std::string& unit) {
-    const std::string size = quantity(value, unit, -1);
-    return value < 0 || unit.starts_with(kLogarithm) ? size : "+" + size;
-}
 
 std::string cause_sentence(const Cause& cause) {
     std::string text = cause.title;

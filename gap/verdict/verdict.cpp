@@ -195,19 +195,6 @@ std::string_view decision_name(Decision decision) {
     return kNames[static_cast<std::size_t>(decision)];
 }
 
-std::string plain_observable(const std::string& name) {
-    constexpr std::string_view kOutliers = "outliers of ";
-    static const std::map<std::string, const char*> kPlain{{"along", "distance along the heading"},
-                                                           {"across", "distance across the heading"},
-                                                           {"x_m", "position x"},
-                                                           {"y_m", "position y"},
-                                                           {"place", "position"}};
-    if (name.starts_with(kOutliers))
-        return std::string(kOutliers) + plain_observable(name.substr(kOutliers.size()));
-    const auto known = kPlain.find(name);
-    return known == kPlain.end() ? name : known->second;
-}
-
 std::string to_json(const Verdict& verdict) {
     std::vector<FreeForm> clear;
     std::copy_if(verdict.free_forms.begin(), verdict.free_forms.end(), std::back_inserter(clear),

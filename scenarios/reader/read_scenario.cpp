@@ -121,6 +121,8 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
     scenario.events.events = read_events(top);
     scenario.expectations = read_expectations(top);
     top.finish();
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i)
+        scenario.world.robots[i].rab = scenario.robots[i].rab.has_value();
     physics::check(scenario.world);
     physics::check_events(scenario.events, scenario.world);
     return scenario;

@@ -1,6 +1,7 @@
 #include "selftest/emulate/rerun.h"
 
 #include "base/error.h"
+#include "gap/overlay/overlay.h"
 #include "gap/overlay/overlay_parts.h"
 #include "physics/description/parameters.h"
 #include "selftest/emulate/comparison.h"

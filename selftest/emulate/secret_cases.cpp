@@ -1,7 +1,9 @@
 #include "selftest/emulate/secret_cases.h"
 
 #include "base/random.h"
+#include "gap/overlay/overlay.h"
 #include "gap/pipeline/analyse.h"
+#include "gap/reading/read_experiment.h"
 #include "selftest/emulate/rerun.h"
 #include "selftest/grammar/drawn_case.h"
 

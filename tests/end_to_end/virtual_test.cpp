@@ -120,11 +120,11 @@ TEST_CASE("what is wrong with a virtual thing is one line with its place") {
     const auto refused = [&](const std::string& table, const Words& words) {
         check_one_line(bench.run("bad", {bench.file("bad.toml", wanderer(table)), "--in-process"}), 2, words);
     };
-    refused(std::string(kBorder) + "robots = [\"nobody\"]\n", {"line 12", "there is no robot 'nobody'"});
+    refused(std::string(kBorder) + "robots = [\"nobody\"]\n", {"line 13", "there is no robot 'nobody'"});
     refused("[[virtual_box]]\ncentre = [\"0 m\", \"0 m\"]\nsize = [\"1 cm\", \"1 cm\", \"1 cm\"]\n"
             "mass = \"1 kg\"\n",
-            {"line 15", "a virtual box has none"});
-    refused("[[pheromone]]\nhalf_live = \"3 s\"\n", {"line 13", "half_life"});
+            {"line 16", "a virtual box has none"});
+    refused("[[pheromone]]\nhalf_live = \"3 s\"\n", {"line 14", "half_life"});
     refused("[[pheromone]]\nled = \"led9\"\n", {"led9"});
     refused("[[virtual_board]]\nposition = [\"0 m\", \"0 m\"]\ndata = [1]\n",
             {"no robot has a range-and-bearing board"});

@@ -20,8 +20,6 @@ using Includes = std::map<std::string, std::map<std::string, std::string>>;  // 
 /// smaller has to be smaller here.
 const std::map<std::string, std::size_t> kKnown = {
     {"cosim/faults", 2},            // the table of kinds and what it is a table of
-    {"gap/clean", 14},              // the analysis of measured data
-    {"gap/overlay", 2},             // with gap/pipeline
     {"linuxboard/coordinator", 2},  // with its experiments
     {"linuxboard/shim/devices", 2},
 };

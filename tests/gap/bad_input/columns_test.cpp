@@ -2,6 +2,7 @@
 // values.
 
 #include "gap/models/model.h"
+#include "gap/reading/read_experiment.h"
 #include "gap/validate/checks.h"
 #include "tests/gap/bad_input/made_experiment.h"
 

@@ -1,5 +1,6 @@
 // Files as editors, spreadsheets and broken disks leave them.
 
+#include "gap/reading/read_experiment.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>

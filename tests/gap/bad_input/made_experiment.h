@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "gap/data/experiment.h"
+#include "gap/reading/read_experiment.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>

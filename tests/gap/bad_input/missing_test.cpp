@@ -1,6 +1,7 @@
 // Cells missing in columns that the models predict from: nothing is put there that nobody measured.
 
 #include "gap/pipeline/analyse.h"
+#include "gap/reading/read_experiment.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "gap/clean/clean.h"
 #include "gap/pipeline/analyse.h"
+#include "gap/reading/read_experiment.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>

@@ -3,6 +3,7 @@
 #include "gap/begin/expected_time.h"
 #include "gap/begin/readiness.h"
 #include "gap/data/problems.h"
+#include "gap/reading/read_experiment.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>

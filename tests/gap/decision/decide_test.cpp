@@ -4,8 +4,8 @@
 #include "base/random.h"
 #include "gap/decide/decide.h"
 #include "gap/decide/roles.h"
-#include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit_test/rival_forms.h"
 #include "gap/pipeline/analyse.h"
 

@@ -2,7 +2,7 @@
 // by row, but never as far.
 
 #include "base/random.h"
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/pipeline/analyse.h"
 #include "tests/gap/simulated.h"
 

@@ -1,7 +1,7 @@
 // What sums of a drive say of pushes and of way lost in some rows, on toy drives there and back.
 
-#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/pushes.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/study.h"
 #include "gap/fit_test/wander.h"

@@ -1,9 +1,9 @@
 // Sums that wander beside what was measured: seen where they do, not where errors carry over. And a measured
 // heading, whose noise is in the residual, too.
 
-#include "gap/diagnostics/residual_structure.h"
 #include "gap/fit_test/wander.h"
 #include "gap/pipeline/analyse.h"
+#include "gap/residuals/residual_structure.h"
 #include "tests/gap/decision/toy_drives.h"
 
 #include <catch2/catch.hpp>

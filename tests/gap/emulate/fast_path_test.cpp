@@ -3,6 +3,7 @@
 
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
+#include "gap/reading/read_experiment.h"
 #include "selftest/emulate/record.h"
 #include "tests/gap/simulated.h"
 #include "tests/scratch.h"

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
+#include "gap/reading/read_experiment.h"
 #include "physics/sensors/ground.h"
 #include "selftest/emulate/record.h"
 #include "selftest/emulate/secrets.h"

@@ -1,6 +1,7 @@
 // A robot that is not as the simulator believes is recorded; the overlay of the cause makes the emulator do
 // what was measured, from the TOML file on to the readings.
 
+#include "gap/overlay/overlay.h"
 #include "scenarios/reader/read_scenario.h"
 #include "selftest/emulate/record.h"
 #include "selftest/emulate/rerun.h"

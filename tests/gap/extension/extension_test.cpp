@@ -2,6 +2,7 @@
 // the overlay that a run takes.
 
 #include "base/random.h"
+#include "gap/overlay/overlay.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/plan.h"
 #include "scenarios/reader/read_scenario.h"

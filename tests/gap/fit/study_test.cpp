@@ -1,5 +1,5 @@
 #include "base/random.h"
-#include "gap/decide/thresholds.h"
+#include "gap/evidence/thresholds.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/select.h"

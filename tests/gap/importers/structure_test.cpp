@@ -1,7 +1,7 @@
 // An experiment's own columns become the covariates of its residuals.
 
 #include "base/random.h"
-#include "gap/diagnostics/residual_structure.h"
+#include "gap/residuals/residual_structure.h"
 #include "gap/validate/placements.h"
 
 #include <catch2/catch.hpp>

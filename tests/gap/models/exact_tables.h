@@ -4,6 +4,7 @@
 
 #include "gap/data/experiment.h"
 #include "gap/models/model.h"
+#include "gap/reading/read_experiment.h"
 #include "selftest/benches.h"
 #include "tests/scratch.h"
 

@@ -3,9 +3,9 @@
 
 #include "base/random.h"
 #include "gap/clean/quantum.h"
-#include "gap/diagnostics/residual_structure.h"
 #include "gap/effects/effect.h"
 #include "gap/overlay/overlay_parts.h"
+#include "gap/residuals/residual_structure.h"
 #include "physics/sensors/accelerometer.h"
 #include "tests/gap/models/made_table.h"
 

@@ -1,6 +1,7 @@
 // What a verdict's overlay says, and that every effect enters the simulator where its file puts it.
 
 #include "gap/effects/effect.h"
+#include "gap/overlay/overlay.h"
 #include "gap/overlay/overlay_parts.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/parameters.h"

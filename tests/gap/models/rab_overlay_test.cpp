@@ -1,6 +1,7 @@
 // An overlay of a verdict on range and bearing, loaded by a scenario of two robots: what board "b" reports of
 // board "a", through the medium and the boards' own formula, changes as the verdict says.
 
+#include "gap/overlay/overlay.h"
 #include "gap/pipeline/analyse.h"
 #include "protocols/rab_reading.h"
 #include "scenarios/reader/read_scenario.h"

@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 #include "gap/predictive/check.h"
-#include "gap/predictive/main_covariates.h"
 #include "gap/predictive/posterior.h"
+#include "gap/residuals/main_covariates.h"
 #include "gap/stats/robust.h"
 
 #include <catch2/catch.hpp>

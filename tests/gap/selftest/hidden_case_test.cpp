@@ -1,6 +1,7 @@
 // The generator of hidden effects: what it writes the tool can read, and says nothing of what was hidden.
 
 #include "gap/data/experiment.h"
+#include "gap/reading/read_experiment.h"
 #include "selftest/case_list.h"
 #include "tests/scratch.h"
 

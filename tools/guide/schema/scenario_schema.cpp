@@ -343,8 +343,8 @@ ordered_json scenario_schema() {
     properties["speaker"] = list_schema(table_schema("a loudspeaker", kSpeaker, {"position", "level"}));
     properties["floor_patch"] = list_schema(table_schema("paper on the floor", kPatch, {"centre"}));
     const auto add_virtual = [&](const char* name, const char* about, std::span<const SchemaKey> keys,
-                                 std::vector<std::string> required) {
-        ordered_json table = table_schema(about, keys, std::move(required));
+                                 std::initializer_list<std::string_view> required) {
+        ordered_json table = table_schema(about, keys, required);
         table["properties"].erase("mass");
         add_keys(table, kWhoSenses);
         properties[name] = list_schema(std::move(table));

@@ -1,4 +1,4 @@
-#include "gap/predictive/main_covariates.h"
+#include "gap/residuals/main_covariates.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 // so far), time, order, sessions.
 
 #include "gap/data/experiment.h"
+#include "gap/findings/findings.h"
 #include "gap/stats/structure.h"
-#include "gap/verdict/verdict.h"
 
 namespace puckloop::gap {
 

@@ -1,4 +1,4 @@
-#include "gap/diagnostics/residual_structure.h"
+#include "gap/residuals/residual_structure.h"
 
 #include "gap/data/columns.h"
 #include "gap/stats/series.h"
