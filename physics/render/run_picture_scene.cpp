@@ -98,11 +98,26 @@ void Picture::floor() {
     canvas_.raw("</g>\n");
 }
 
-/// As at the end of the run.
+/// As at the end of the run. Squares beside each other that look the same are one shape.
 void Picture::trails() {
-    for (const TrailSquare& square : trails_)
-        canvas_.shape(box_shape(square.x, square.y, 0, square.side, square.side, 0, 0),
-                      fmt::format("fill=\"{}\" fill-opacity=\"{:.2f}\"", grey(square.grey), square.strength));
+    constexpr double kLevels = 16;
+    const auto level = [](const TrailSquare& square) { return std::lround(square.strength * kLevels); };
+    for (std::size_t from = 0, to = 0; from < trails_.size(); from = to) {
+        const TrailSquare& first = trails_[from];
+        const auto goes_on = [&](const TrailSquare& next) {
+            const double expected = first.x + static_cast<double>(to - from) * first.side;
+            return next.grey == first.grey && level(next) == level(first) &&
+                   std::abs(next.y - first.y) < first.side / 2 &&
+                   std::abs(next.x - expected) < first.side / 2;
+        };
+        for (to = from + 1; to < trails_.size() && goes_on(trails_[to]);)
+            ++to;
+        if (level(first) == 0) continue;
+        const double length = static_cast<double>(to - from) * first.side;
+        canvas_.shape(box_shape(first.x + (length - first.side) / 2, first.y, 0, length, first.side, 0, 0),
+                      fmt::format("fill=\"{}\" fill-opacity=\"{:.2f}\"", grey(first.grey),
+                                  static_cast<double>(level(first)) / kLevels));
+    }
 }
 
 void Picture::grid() {

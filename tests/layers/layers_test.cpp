@@ -165,6 +165,7 @@ const std::vector<std::string> kFolders = {
     "gap/pipeline",
     "gap/report",
     "gap/begin",
+    "gap/mission",
     "selftest",
     "selftest/grammar",
     "selftest/emulate",

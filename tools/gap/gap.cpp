@@ -208,6 +208,7 @@ void declare_gap(Command& app, int& status) {
     declare_log_options(*command, request->log);
     command->require_subcommand(0, 1);
     declare_gap_new(*command, status);
+    declare_gap_mission(*command, status);
     declare_gap_check(*command, status);
     declare_gap_import(*command, status);
     declare_gap_record(*command, status);
