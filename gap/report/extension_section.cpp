@@ -1,5 +1,6 @@
 #include "base/chart.h"
 #include "base/svg.h"
+#include "gap/findings/quantities.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"

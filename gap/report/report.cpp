@@ -1,6 +1,7 @@
 #include "gap/report/report.h"
 
 #include "base/svg.h"
+#include "gap/findings/quantities.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"
 

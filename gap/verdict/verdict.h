@@ -2,6 +2,7 @@
 // What the analysis says: the content of gap.json and of the report. Numbers in SI units unless a unit stands
 // beside them.
 
+#include "gap/data/experiment.h"
 #include "gap/decide/confirmation.h"
 #include "gap/decide/decide.h"
 #include "gap/findings/extension.h"

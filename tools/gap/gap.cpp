@@ -8,6 +8,7 @@
 #include "gap/begin/expected_time.h"
 #include "gap/data/columns.h"
 #include "gap/data/experiment.h"
+#include "gap/findings/quantities.h"
 #include "gap/overlay/overlay.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/reading/read_experiment.h"
