@@ -21,8 +21,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kFewestRuns = 2;  // of a program: one has no spread
 
 const std::vector<Statistic> kStatistics{
-    {"score", "1"},         {"speed", "m/s"},      {"turning", "rad/s"},    {"standing", "share"},
-    {"nearest robot", "m"}, {"crowd radius", "m"}, {"swarm's speed", "m/s"}};
+    {"score", "1"},         {"speed", "m/s"},        {"turning", "rad/s"}, {"standing", "share"},
+    {"nearest robot", "m"}, {"crowd radius", "m"},   {"cruise", "m/s"},    {"veer", "rad/s"},
+    {"approach", "m"},      {"swarm's speed", "m/s"}};
 
 struct Header {
     std::optional<std::size_t> program, run, score, condition, failed;
@@ -88,8 +89,8 @@ MissionRuns read_mission_runs(const fs::path& folder) {
                              fmt::format("score {} is not a number", text), "a number, or nothing");
         const fs::path track = track_of(folder, run.name, file, number);
         const Behaviour seen = behaviour_of(read_track(track), track);
-        run.values = {score,        seen.speed, seen.turning, seen.standing,
-                      seen.nearest, seen.crowd, seen.crossing};
+        run.values = {score,      seen.speed,  seen.turning, seen.standing, seen.nearest,
+                      seen.crowd, seen.cruise, seen.veer,    seen.approach, seen.crossing};
         note(all.programs, run.program);
         note(all.conditions, run.condition);
         all.runs.push_back(std::move(run));

@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/quantile.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,8 @@ namespace {
 
 constexpr double kWindow = 0.5;     // s
 constexpr double kStanding = 0.01;  // m/s
+constexpr double kTurning = 0.5;    // rad/s: above it a robot turns on purpose
+constexpr double kClosest = 0.05;   // share of distances that is called an approach
 constexpr std::size_t kFewest = 4;  // windows
 
 struct Columns {
@@ -147,6 +150,8 @@ Behaviour behaviour_of(const std::vector<Way>& ways, const std::filesystem::path
         throw InputError(file.string(), "", fmt::format("lasts {:.3g} s", end - begin),
                          fmt::format("at least {} s", kWindow * static_cast<double>(kFewest)));
     Mean speed, turning, standing, nearest, crowd, crossing;
+    std::vector<double> straight, distances;
+    Mean veer;
     Instant before = instant(ways, begin);
     for (double k = 1; k <= windows; ++k) {
         const Instant now = instant(ways, begin + k * kWindow);
@@ -156,16 +161,24 @@ Behaviour behaviour_of(const std::vector<Way>& ways, const std::filesystem::path
                 const double v = std::hypot(now.x[i] - before.x[i], now.y[i] - before.y[i]) / kWindow;
                 speed.add(v);
                 standing.add(v < kStanding ? 1.0 : 0.0);
-                if (!ways[i].heading.empty())
-                    turning.add(
-                        std::abs(std::remainder(now.heading[i] - before.heading[i], 2 * std::numbers::pi)) /
-                        kWindow);
+                if (!ways[i].heading.empty()) {
+                    const double turn =
+                        std::remainder(now.heading[i] - before.heading[i], 2 * std::numbers::pi) / kWindow;
+                    turning.add(std::abs(turn));
+                    if (v >= kStanding && std::abs(turn) < kTurning) {
+                        straight.push_back(v);
+                        veer.add(turn);
+                    }
+                }
             }
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t j = 0; j < ways.size(); ++j)
                 if (j != i && now.there[j])
                     least = std::min(least, std::hypot(now.x[i] - now.x[j], now.y[i] - now.y[j]));
-            if (std::isfinite(least)) nearest.add(least);
+            if (std::isfinite(least)) {
+                nearest.add(least);
+                distances.push_back(least);
+            }
         }
         double x = 0, y = 0, x_before = 0, y_before = 0;
         if (middle(now, x, y)) {
@@ -176,8 +189,15 @@ Behaviour behaviour_of(const std::vector<Way>& ways, const std::filesystem::path
         }
         before = now;
     }
-    return {speed.value(),   turning.value(), standing.value(),
-            nearest.value(), crowd.value(),   crossing.value()};
+    return {.speed = speed.value(),
+            .turning = turning.value(),
+            .standing = standing.value(),
+            .nearest = nearest.value(),
+            .crowd = crowd.value(),
+            .cruise = median(straight),
+            .veer = veer.value(),
+            .approach = quantile(distances, kClosest),
+            .crossing = crossing.value()};
 }
 
 }  // namespace puckloop::gap::mission

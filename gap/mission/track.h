@@ -24,6 +24,9 @@ struct Behaviour {
     double standing = 0.0;  ///< share of windows with less than 1 cm/s
     double nearest = 0.0;   ///< m to the nearest other robot; NaN of a single one
     double crowd = 0.0;     ///< m from the swarm's middle; NaN of a single one
+    double cruise = 0.0;    ///< m/s: median speed of windows without a turn; NaN without headings
+    double veer = 0.0;      ///< rad/s: mean turn to the left in these windows; NaN without headings
+    double approach = 0.0;  ///< m: of the distances to the nearest robot, one in twenty is less
     double crossing = 0.0;  ///< m/s, of the swarm's middle; NaN of a single one
 };
 /// Throws InputError, naming `file`, for fewer than four windows in common.

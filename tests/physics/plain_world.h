@@ -50,7 +50,10 @@ class PlainWorld {
     /// What robot i's proximity sensors get back of their own light.
     std::array<double, kProximitySensors> reflected(std::size_t robot, const ProximityParameters& p) const {
         std::array<double, kProximitySensors> result{};
-        const auto shapes = others(robot, p.height);
+        auto shapes = others(robot, p.height);
+        for (const VirtualBody& body : model_.virtual_bodies())
+            if (!model_.robot(robot).lifted() && body.sensed_by(name(robot)) && body.shape.height >= p.height)
+                shapes.push_back(body.shape);
         const Body& own = seen_[robot];
         const double cosine = std::cos(own.heading), sine = std::sin(own.heading);
         const long count = std::lround(p.rays);
@@ -93,6 +96,8 @@ class PlainWorld {
             double light = room;
             for (const Lamp& lamp : model_.description().lamps)
                 light += from_lamp(lamp, sensor, p, places.height, shapes);
+            for (const auto& lamp : model_.description().virtuals.lamps)
+                if (lamp.sensed_by(name(robot))) light += from_lamp(lamp, sensor, p, places.height, shapes);
             counts[i] = std::clamp(p.dark + p.offset[i] - p.span * p.gain[i] * light, 0.0, kFullScale);
         }
         return counts;
@@ -165,6 +170,7 @@ class PlainWorld {
         }
     };
 
+    const std::string& name(std::size_t robot) const { return model_.description().robots[robot].name; }
     static RobotState state(const Body& body) { return {.x = body.x, .y = body.y, .heading = body.heading}; }
 
     std::vector<Shape> others(std::size_t robot, double least_height) const {

@@ -87,6 +87,30 @@ inline World random_world(RandomStream& chance, int robots) {
     });
     add_things(world, world.robots, robots,
                [&](const std::string& name) { return robot_at("e" + name, place(), place(), turn()); });
+    // Virtual things may be anywhere; every other one is sensed by the first robot alone.
+    const auto who = [&](int i) {
+        return i % 2 == 0 || world.robots.empty() ? std::vector<std::string>{}
+                                                  : std::vector<std::string>{world.robots[0].name};
+    };
+    for (int i = 0; i < 2; ++i) {
+        Virtual<Box> box;
+        static_cast<Box&>(box) = {.name = "ghost" + std::to_string(i),
+                                  .x = place(),
+                                  .y = place(),
+                                  .heading = turn(),
+                                  .length = 0.1,
+                                  .width = between(chance, .03, .2)};
+        box.robots = who(i);
+        world.virtuals.boxes.push_back(box);
+        Virtual<Lamp> lamp;
+        static_cast<Lamp&>(lamp) = {.name = "glow" + std::to_string(i),
+                                    .x = place(),
+                                    .y = place(),
+                                    .height = between(chance, .02, .4),
+                                    .intensity = chance.uniform()};
+        lamp.robots = who(i + 1);
+        world.virtuals.lamps.push_back(lamp);
+    }
     return world;
 }
 
@@ -104,6 +128,8 @@ inline Action random_action(RandomStream& chance, const World& world) {
     note(world.cylinders);
     note(world.lamps);
     note(world.patches);
+    note(world.virtuals.boxes);
+    note(world.virtuals.lamps);
     note(world.robots);
     Action action;
     action.verb = kVerbs[chance.below(std::size(kVerbs))];

@@ -69,6 +69,9 @@ TEST_CASE("a track's numbers are those of the way that was driven") {
     CHECK(seen.standing == Approx(0.5));
     CHECK(seen.nearest == Approx(0.3).epsilon(1e-3));
     CHECK(seen.crowd == Approx(0.15).epsilon(1e-3));
+    CHECK(seen.cruise == Approx(chord).epsilon(1e-3));  // the one that drives
+    CHECK(seen.veer == Approx(0.1 / 0.3).epsilon(1e-3));
+    CHECK(seen.approach == Approx(0.3).epsilon(1e-3));
     CHECK(seen.crossing == Approx(chord / 2).epsilon(1e-3));
 }
 
