@@ -12,6 +12,8 @@
 //  4. A START or STOP in the middle of an address byte, or of a byte of ours, is a bus error (0x00); other
 //     units' data bytes are not followed.
 //  5. A STOP or START of another master in the middle of a phase of ours is a bus error (0x00) at once.
+//  6. Switched off in the middle of a byte that it sends, the unit has sent ones from its first bit on.
+//  7. TWDR holds what this unit had to do with, not what others sent each other.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"

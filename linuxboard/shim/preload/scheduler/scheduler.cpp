@@ -290,6 +290,7 @@ void route_signal() {
         // All block it: it is kept by the host, for sigpending(), sigwait() and the one that unblocks it.
         const std::uint64_t bit = std::uint64_t{1} << number;
         pending_signals &= ~bit;
+        if ((from_node & bit) != 0) expect_origin(number);
         from_node &= ~bit;
         host_call(SYS_kill, host_call(SYS_getpid), number);
         external_changed();  // a signalfd() is readable
