@@ -16,9 +16,6 @@ std::string plain_text(std::string_view text, std::size_t most);
 /// The same for a message of several lines: a line feed stays.
 std::string plain_lines(std::string_view text, std::size_t most);
 
-/// Bytes of one word of a command line that are shown.
-inline constexpr std::size_t kLongestWord = 100;
-
 /// Bytes of a whole message that is shown; what a user gave is cut earlier (base/error.cpp).
 inline constexpr std::size_t kLongestMessage = 8192;
 

@@ -2,6 +2,7 @@
 
 #include "base/plain_text.h"
 #include "base/suggest.h"
+#include "tools/cli/shown_word.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -88,7 +89,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     const bool no_command = !in_command && code == static_cast<int>(CLI::ExitCodes::RequiredError);
     if (!word.empty() && (no_command || code == static_cast<int>(CLI::ExitCodes::ExtrasError))) {
         const char* kind = word.starts_with("-") ? "option" : in_command ? "argument" : "command";
-        problem = fmt::format("unknown {} '{}'", kind, plain_text(word, kLongestWord));
+        problem = fmt::format("unknown {} '{}'", kind, shown_word(word));
         const std::string parts = in_command ? parts_of(command) : std::string();
         if (const std::string part = misspelt_part(command); !word.starts_with("-") && !part.empty())
             help = fmt::format("perhaps {} {}; {}", name, part, help);

@@ -13,8 +13,7 @@
 //   byte received      STREN = 0: answer at the 8th clock, SI2CxIF at the 9th; STREN = 1: deviation 1
 //   overrun            RBF or I2COV still set: no acknowledge; with RBF the byte is lost and I2COV set
 //   byte sent          TBF falls at the 8th clock; SI2CxIF when the master acknowledged, and SCLREL = 0
-//   unless
-//                      TBF is set again by then
+//                      unless TBF is set again by then
 //   not acknowledged   at the end of the 9th clock the slave resets without a sign (DS70068C, 21.7.5): it is
 //                      not addressed any more, whoever clocks on reads ones; a byte that the program put into
 //                      TRN meanwhile is dropped (TBF = 0)
