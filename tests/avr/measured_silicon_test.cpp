@@ -236,7 +236,7 @@ int adc_by_sleep() {
 
 /// Free running: whether more than one conversion comes of one ADSC.
 int adc_free_running() {
-    Rig rig = counting(0x60, "ldi r16, 0\nsts 0x7B, r16\nldi r16, 0xE9\nsts 0x7A, r16\n");
+    Rig rig = counting(0x60, "ldi r16, 0\nsts 0x7B, r16\nldi r16, 0xEF\nsts 0x7A, r16\n");
     rig.run(60'000 * 4);
     return rig.ram(0x100) > 1 ? 1 : 0;
 }

@@ -66,7 +66,7 @@ struct UnitsMaster {
     }
 };
 
-const std::string kAddressedAgain = "ldi r16, 0x44\nsts TWCR, r16\nend: rjmp end\n";
+const std::string kAddressedAgain = "ldi r16, 0xC4\nsts TWCR, r16\nend: rjmp end\n";
 
 }  // namespace
 

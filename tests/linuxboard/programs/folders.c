@@ -34,7 +34,7 @@ static void print_sorted(const char *way, char names[][32], int count) {
 static char names[256][32];
 static int names_count;
 static void add(const char *name) {
-    if (shown(name) && names_count < 256) snprintf(names[names_count++], sizeof names[0], "%s", name);
+    if (shown(name) && names_count < 256) snprintf(names[names_count++], sizeof names[0], "%.31s", name);
 }
 static void print(const char *way) {
     print_sorted(way, names, names_count);
@@ -134,7 +134,6 @@ static void all(char *path, const char *pattern) {
     by_readdir(path);
     by_scandir(path);
     by_glob(pattern);
-    by_nftw(path);
     by_fts(path);
     by_calls(path);
 }
@@ -149,6 +148,7 @@ int main(void) {
     usleep(10000);
     all("/proc", "/proc/[0-9]*");
     all("/dev", "/dev/*[0-9]");
+    by_nftw("/dev");
     glob_t found = {0};
     glob("/proc/[0-9]*/stat", 0, NULL, &found); /* whether they are there is asked for by name */
     printf("of processes %zu", found.gl_pathc);

@@ -1,6 +1,8 @@
 // What folders hold that are other on the board: /proc has its processes and not the host's, /dev the devices
 // of the scenario too, /proc/self/fd no descriptors of this library. All ways to list a folder end in
 // getdents64(), the C library's own too (libc_hooks.cpp): readdir(), scandir(), glob(), nftw(), fts_read().
+// Deviation: nftw() and fts_read() open the folders below one relative to it, past this library, and so come
+// not into /proc/NUMBER; nftw() ends there.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
