@@ -87,10 +87,11 @@ static void kept(void) {
     make_child(SIGUSR2, 0);
     wait(NULL);
     siginfo_t info;
-    const int number = sigwaitinfo(&set, &info);
+    int number = sigwaitinfo(&set, &info);
     printf("waited for: signal %d by %s\n", number, who(info.si_pid));
     raise(SIGUSR2);
-    printf("waited for: signal %d by %s\n", sigwaitinfo(&set, &info), who(info.si_pid));
+    number = sigwaitinfo(&set, &info);
+    printf("waited for: signal %d by %s\n", number, who(info.si_pid));
 }
 
 static void send_credentials(int fd) {
