@@ -127,8 +127,8 @@ TEST_CASE("a low limit of the stack is enough") {
         words.insert(words.end(), more.begin(), more.end());
         const Ended ended = Process(words, bench.folder()).wait();
         INFO(ended.err);
-        CHECK(ended.status == (more.front() == "--linux" ? 1 : 0));  // it never opens its port
-        CHECK(bench.report("o")["simulated_s"].get<double>() == Approx(2.0).margin(0.01));
+        CHECK(ended.status == (more.size() > 1 ? 1 : 0));  // it never opens its port
+        CHECK(bench.report("o")["simulated_s"].get<double>() == Approx(2.0).margin(0.05));
     }
     const Ended help =
         Process({"/bin/sh", "-c", "ulimit -s 64; exec \"$0\" gap --help", PUCKLOOP_PROGRAM}, bench.folder())
