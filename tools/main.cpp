@@ -2,6 +2,7 @@
 
 #include "run/factory/node_process.h"
 #include "run/plan/linux_arguments.h"
+#include "tools/cli/ample_stack.h"
 #include "tools/cli/file_size_limit.h"
 #include "tools/cli/program.h"
 #include "tools/commands.h"
@@ -39,11 +40,7 @@ std::vector<DeclareCommand> all_commands() {
     return all;
 }
 
-}  // namespace
-}  // namespace puckloop::tools
-
-int main(int argc, char** argv) {
-    using namespace puckloop::tools;
+int run(int argc, char** argv) {
     survive_file_size_limit();
     if (const auto status = serve_as_node(argc, argv)) return *status;
     if (argc > 1 && std::string_view(argv[1]) == "gap") return become_gap(argv);
@@ -58,4 +55,11 @@ int main(int argc, char** argv) {
         return become_gap(pointers.data());
     }
     return run_program(all_commands(), pack_linux_arguments({argv + 1, argv + argc}), kHeadings);
+}
+
+}  // namespace
+}  // namespace puckloop::tools
+
+int main(int argc, char** argv) {
+    return puckloop::tools::with_ample_stack(puckloop::tools::run, argc, argv);
 }

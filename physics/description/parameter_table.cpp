@@ -258,7 +258,7 @@ std::vector<ParameterInfo> build_table() {
         {"camera.booth_level", "1", 1, {8.0}, 0.0, 50, AT(camera.booth_level), "? a TAM's LED at full duty: at 25/255, which coordinators use, it still stands out"},
         {"camera.crosstalk", "1", 1, {0.06}, 0.0, 0.5, AT(camera.crosstalk), "? share of a colour's light that the pixels of the other two see"},
         {"camera.ring_radius", "m", 1, {0.004}, 0.0005, 0.02, AT(camera.ring_radius), "? of the spot as which a LED of the ring is seen"},
-        {"camera.turret_radius", "m", 1, {0.0084}, 0.0005, 0.03, AT(camera.turret_radius), "the blob areas of ARGoS, 95.644 exp(-0.11 d/cm) px at 10 and 20 cm [A]"},
+        {"camera.turret_radius", "m", 1, {0.0046}, 0.0005, 0.03, AT(camera.turret_radius), "of the spot as which a LED of the RGB turret is seen: between the blob areas of ARGoS, 95.644 exp(-0.11 d/cm) px, at 10 and at 20 cm [A]"},
 
         // The world.
         {"world.gravity", "m/s2", 1, {9.81}, 1.0, 30.0, AT(world.gravity), "standard"},

@@ -173,6 +173,104 @@ int level_interrupt() {
     return main == 40 && routines >= main && routines <= main + 2 ? 1 : -routines;
 }
 
+/// Milliseconds from the program's start to the watchdog's reset, which began with 8 s; 0: none came.
+int watchdog_shortened() {
+    Rig rig("ldi r16, 0x18\nsts 0x60, r16\nldi r16, 0x29\nsts 0x60, r16\nldi r16, 0x18\nsts 0x60, r16\n"
+            "ldi r16, 0x08\nsts 0x60, r16\nend: rjmp end\n");
+    constexpr Cycle kMillisecond = 16'000;
+    rig.run(30 * kMillisecond);
+    for (const ResetRecord& reset : rig.chip.report().resets)
+        if (reset.cause == ResetCause::Watchdog)
+            return static_cast<int>((reset.cycle + kMillisecond / 2) / kMillisecond);
+    return 0;
+}
+
+/// Resets after the two writes by which a boot loader switches the watchdog off.
+int watchdog_off() {
+    Rig rig("ldi r16, 0x18\nsts 0x60, r16\nldi r16, 0x08\nsts 0x60, r16\nldi r16, 0x18\nsts 0x60, r16\n"
+            "eor r16, r16\nsts 0x60, r16\nend: rjmp end\n");
+    rig.run(1'000'000);
+    return static_cast<int>(rig.chip.report().resets.size()) - 1;  // power-on
+}
+
+/// A program whose interrupt at `vector` counts in r17, which is left at 0x100 when `set_up` and 60,000
+/// clocks are over.
+Rig counting(int vector, const std::string& set_up, const ChipOptions& options = {}) {
+    return Rig("jmp start\n.org " + std::to_string(vector) +
+                   "\ninc r17\nreti\n.org 0x80\nstart: ldi r16, 0x40\nout 0x3E, r16\neor r17, r17\n" +
+                   set_up +
+                   "sei\nldi r24, 0\nldi r25, 100\nagain: sbiw r24, 1\nbrne again\nldi r24, 0\nldi r25, 100\n"
+                   "more: sbiw r24, 1\nbrne more\nsts 0x100, r17\nend: rjmp end\n",
+               options);
+}
+
+/// The watchdog's interrupt without its reset, at the first of its periods (16 ms), within 100 ms.
+int watchdog_interrupts() {
+    Rig rig(
+        "jmp start\n.org 0x20\nlds r17, 0x100\ninc r17\nsts 0x100, r17\nreti\n.org 0x80\n"
+        "start: ldi r16, 0x40\nout 0x3E, r16\neor r17, r17\nsts 0x100, r17\nldi r16, 0x18\nsts 0x60, r16\n"
+        "ldi r16, 0x40\nsts 0x60, r16\nsei\nend: rjmp end\n");
+    rig.run(1'600'000);
+    return rig.ram(0x100) == 6 && rig.chip.report().resets.size() == 1 ? 1 : 0;
+}
+
+const std::string kTwiStart = "ldi r16, 0xA4\nsts 0xBC, r16\nwait: lds r17, 0xBC\nsbrs r17, 7\nrjmp wait\n";
+
+int twi_status() {
+    return left(kTwiStart + "lds r17, 0xB9\n");
+}
+
+int twi_stop_bit() {
+    return left(kTwiStart + "ldi r16, 0x94\nsts 0xBC, r16\nldi r18, 200\nbusy: dec r18\nbrne busy\n"
+                            "lds r17, 0xBC\nandi r17, 0x10\n");
+}
+
+/// The converter's interrupts from one SLEEP in noise reduction, without ADSC.
+int adc_by_sleep() {
+    Rig rig("jmp start\n.org 0x60\ninc r17\nreti\n.org 0x80\nstart: ldi r16, 0x40\nout 0x3E, r16\n"
+            "eor r17, r17\nldi r16, 0x8F\nsts 0x7A, r16\nldi r16, 3\nout 0x33, r16\nsei\nsleep\n"
+            "sts 0x100, r17\nend: rjmp end\n");
+    rig.run(kLong);
+    return rig.ram(0x100);
+}
+
+/// Free running: whether more than one conversion comes of one ADSC.
+int adc_free_running() {
+    Rig rig = counting(0x60, "ldi r16, 0\nsts 0x7B, r16\nldi r16, 0xEF\nsts 0x7A, r16\n");
+    rig.run(60'000 * 4);
+    return rig.ram(0x100) > 1 ? 1 : 0;
+}
+
+/// Pin change interrupts of a pin that is an input, while a compare unit wants to drive it.
+int pin_change_by_compare() {
+    Rig rig = counting(
+        0x10, "ldi r16, 0x10\nsts 0x6B, r16\nldi r16, 1\nsts 0x68, r16\nldi r16, 50\n"
+              "out 0x27, r16\nout 0x28, r16\nldi r16, 0x12\nout 0x24, r16\nldi r16, 1\nout 0x25, r16\n");
+    rig.run(60'000 * 4);
+    return rig.ram(0x100);
+}
+
+/// INT0 at its rising edge, the pin high for the rest of the time.
+int held_edge() {
+    Rig rig = counting(0x04, "ldi r16, 3\nsts 0x69, r16\nldi r16, 1\nout 0x1D, r16\n");
+    rig.set_pin({PortLetter::D, 2}, false);
+    rig.run(1'000);
+    rig.set_pin({PortLetter::D, 2}, true);
+    rig.run(60'000 * 4);
+    return rig.ram(0x100);
+}
+
+/// 0x0F, then 0xF0: "write only" with EEMPE, no mode with EEPE.
+int eeprom_mode() {
+    const std::string busy = ": sbic 0x1F, 1\nrjmp ";
+    Rig rig("ldi r16, 0x10\nout 0x21, r16\neor r16, r16\nout 0x22, r16\nldi r16, 0x0F\nout 0x20, r16\n"
+            "ldi r17, 0x04\nldi r18, 0x02\nldi r19, 0x24\nout 0x1F, r17\nout 0x1F, r18\nfirst" +
+            busy + "first\nldi r16, 0xF0\nout 0x20, r16\nout 0x1F, r19\nout 0x1F, r18\nsecond" + busy +
+            "second\nend: rjmp end\n");
+    rig.run(200'000);
+    return rig.chip.eeprom()[0x10];
+}
+
 const std::map<std::string, std::function<int()>>& programs() {
     static const std::map<std::string, std::function<int()>> all{
         {"tcnt0-out-in", [] { return count_after_out("0", ""); }},
@@ -200,6 +298,16 @@ const std::map<std::string, std::function<int()>>& programs() {
         {"adc-disabled-adsc", [] { return adc_disabled("lds r17, 0x7A\nandi r17, 0x40\n"); }},
         {"sei-sleep-cli", sei_sleep_cli},
         {"level-interrupt", level_interrupt},
+        {"wdt-shortened", [] { return watchdog_shortened() == 16 ? 1 : 0; }},
+        {"wdt-off", watchdog_off},
+        {"wdt-interrupts", watchdog_interrupts},
+        {"twi-status", twi_status},
+        {"twi-stop-bit", twi_stop_bit},
+        {"adc-by-sleep", adc_by_sleep},
+        {"adc-free-running", adc_free_running},
+        {"pcint-compare", pin_change_by_compare},
+        {"int0-held", held_edge},
+        {"eeprom-mode", eeprom_mode},
     };
     return all;
 }

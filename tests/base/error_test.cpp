@@ -16,3 +16,16 @@ TEST_CASE("an error shows control characters and stays one line") {
 TEST_CASE("an error leaves text of other languages alone") {
     CHECK(std::string(puckloop::InputError("é.toml", "", "grün").what()) == "é.toml: grün");
 }
+
+TEST_CASE("of a long word in an error a part is shown, of a long sentence all") {
+    const puckloop::InputError word("", "--board", "no board '" + std::string(100'000, 'x') + "' here",
+                                    "pic");
+    const std::string what = word.what();
+    CHECK(what.size() < 200);
+    CHECK(what.starts_with("--board: no board 'xxx"));
+    CHECK(what.ends_with("xxx' here (expected pic)"));
+    std::string sentence = "not one of";
+    for (int i = 0; i < 100; ++i)
+        sentence += " word" + std::to_string(i);
+    CHECK(std::string(puckloop::InputError("", "", sentence).what()) == sentence);
+}

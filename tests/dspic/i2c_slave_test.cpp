@@ -246,6 +246,20 @@ TEST_CASE("other addresses are not answered, masked ones and the general call ar
     CHECK(general.phase(I2cPhaseKind::Start, 0x00).ack == 1);
     general.chip.run_until(general.bus + cosim::kMicrosecond);
     CHECK((general.status() & 0x0200) == 0x0200);
+    // Reserved addresses never match, whatever the mask; 0x78 begins a ten-bit address.
+    Bus any(configured(0x7F, 0x9000));
+    int answered = 0;
+    for (int address = 0; address < 0x80; ++address) {
+        INFO("address " << address);
+        const bool reserved = address < 0x08 || address > 0x77;
+        for (const int reads : {0, 1}) {
+            const bool acknowledged = any.phase(I2cPhaseKind::Start, address << 1 | reads).ack != 0;
+            CHECK(acknowledged == !reserved);
+            answered += acknowledged;
+            if (acknowledged && reads == 1) any.phase(I2cPhaseKind::Stop);
+        }
+    }
+    CHECK(answered == 2 * 0x70);
     Bus off(configured(0, 0x1000));
     CHECK(off.phase(I2cPhaseKind::Start, 0x40).ack == 0);
     CHECK((off.status() & kStartSeen) == 0);

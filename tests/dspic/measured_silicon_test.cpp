@@ -93,6 +93,12 @@ std::string uart_early_byte() {
     return fmt::format("{}", bench.pins.frames.size());
 }
 
+std::string uart_first_enabled() {
+    Bench30 bench = sender("");
+    finish(bench);
+    return fmt::format("{}", bench.reg("IFS0") >> 10 & 1);
+}
+
 /// OC1 on Timer2 at 1:1; the cycle in which Timer2 is 0 first is that of the label "on".
 struct Comparing : Bench30 {
     Cycle on = 0;
@@ -199,6 +205,7 @@ const std::map<std::string, std::function<std::string()>>& programs() {
         {"timer-write-clears-prescaler", write_clears_prescaler},
         {"uart-bit-26", uart_bit},
         {"uart-early-byte", uart_early_byte},
+        {"uart-first-enabled", uart_first_enabled},
         {"oc-pin-after-match", compare_pin},
         {"oc-flag-after-pin", compare_flag},
         {"oc-pwm-period", pwm_period},

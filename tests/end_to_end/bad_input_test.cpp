@@ -45,6 +45,32 @@ TEST_CASE("firmware that cannot be used is refused with its file and place") {
     refused(bench, {"--firmware", "=x.hex"}, {"'=x.hex' names no board", "BOARD=IMAGE"});
 }
 
+TEST_CASE("of a long word of the command line a part is shown") {
+    const Workbench bench;
+    const std::string word = "begin" + std::string(100'000, 'x') + "end";
+    constexpr std::size_t kReadable = 700;
+    for (const Words& words : {
+             Words{word},
+             Words{"--" + word},
+             Words{"run", "--" + word},
+             Words{"run", "--" + word + "=1"},
+             Words{"run", "--duration", word},
+             Words{"run", "--seed", word},
+             Words{"bench", "--case", word},
+             Words{"exec", "--board", word},
+             Words{"exec", "--seconds", word},
+             Words{"gap", "--seed", word},
+             Words{"gap", "--" + word},
+         }) {
+        Words all{PUCKLOOP_PROGRAM};
+        all.insert(all.end(), words.begin(), words.end());
+        const Ended ended = Process(all, bench.folder()).wait();
+        INFO(words.front() << " " << words.back().substr(0, 10));
+        check_one_line(ended, 2, {"bytes left out"});
+        CHECK(ended.err.size() < kReadable);
+    }
+}
+
 TEST_CASE("a real image of the range-and-bearing board is none for the e-puck") {
     const auto image = outside("PUCKLOOP_IMAGES", "randb.hex");
     if (!image) {

@@ -116,6 +116,26 @@ TEST_CASE("a low limit of open files is enough, or named") {
     }
 }
 
+TEST_CASE("a low limit of the stack is enough") {
+    const Workbench bench;
+    for (const Words& more :
+         {Words{"--in-process"}, Words{}, Words{"--linux", PUCKLOOP_MISBEHAVE, "sleep"}}) {
+        Words words{"/bin/sh",        "-c",  "ulimit -s 64; exec \"$0\" \"$@\"",
+                    PUCKLOOP_PROGRAM, "run", bench.hello(),
+                    "--duration",     "2",   "--out",
+                    bench.out("o")};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ended ended = Process(words, bench.folder()).wait();
+        INFO(ended.err);
+        CHECK(ended.status == (more.size() > 1 ? 1 : 0));  // it never opens its port
+        CHECK(bench.report("o")["simulated_s"].get<double>() == Approx(2.0).margin(0.05));
+    }
+    const Ended help =
+        Process({"/bin/sh", "-c", "ulimit -s 64; exec \"$0\" gap --help", PUCKLOOP_PROGRAM}, bench.folder())
+            .wait();
+    CHECK(help.status == 0);
+}
+
 TEST_CASE("a limit of open files that many robots exceed is named") {
     constexpr int kRobots = 30;
     const Workbench bench;

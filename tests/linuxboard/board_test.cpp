@@ -58,6 +58,21 @@ TEST_CASE("/proc, folders and the kernel's figures are the board's, the same in 
     CHECK(run("computer").log == ran.log);
 }
 
+TEST_CASE("each way to list a folder finds the board's processes and devices") {
+    Bench bench(spec_for("folders"));
+    bench.run(3 * kSecond);
+    const std::string log = bench.log();
+    const auto folder = [](const std::string& path, const std::string& names) {
+        return fmt::format("{0}\nreaddir: {1}\nrewinddir: {1}\nseekdir: 1\nscandir: {1}\nglob: {1}\n"
+                           "fts_read: {1}\ngetdents64: {1}\ngetdents: {1}\n",
+                           path, names);
+    };
+    CHECK_THAT(log, Contains(folder("/proc", "1000 1001 1002 1003")));
+    CHECK_THAT(log, Contains(folder("/dev", "i2c-3 ttyS0") + "nftw: i2c-3 ttyS0\n"));
+    CHECK_THAT(log, Contains("of processes 4, /proc/1001/fd, a device 0, another 3\n"
+                             "a device is no folder: 1\n"));
+}
+
 TEST_CASE("the last close of the serial port takes until what was written is out") {
     constexpr Time kOut = 300 * 10 * kSecond / 115'200;
     const std::string how = GENERATE(values<std::string>({"leave", "close", "die"}));

@@ -180,6 +180,21 @@ TEST_CASE("a handler is given the sender of its signal, and how a child ended") 
     check_same(family("origins"), ran);
 }
 
+TEST_CASE("a process number that the kernel states is the program's, wherever it comes from") {
+    const linuxboard::LinuxSpec spec = spec_for("senders");
+    const Ran ran = run(spec);
+    CHECK(ran.log == "read: signal 10 by child, user 1, code 0, status 0\n"
+                     "readv: signal 17 by child, user 1, code 1, status 5\n"
+                     "raised: signal 10 by self, user 1, code -6, status 0\n"
+                     "first: signal 10 by child, user 1, code 0, status 0\n"
+                     "second: signal 17 by child, user 1, code 1, status 6\n"
+                     "unblocked: signal 12 by child\n"
+                     "waited for: signal 12 by child\nwaited for: signal 12 by self\n"
+                     "peer: self\nsender: child\n"
+                     "message by child, semaphore by child, memory of self, used by child, lock of child\n");
+    check_same(spec, ran);
+}
+
 TEST_CASE("system and popen run their shells in simulated time") {
     const Ran ran = run(family("shells"));
     CHECK_THAT(ran.log, Contains("system 4\n") && Contains(": one\n") && Contains(": two\npclose 0\n") &&

@@ -6,6 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <stdlib.h>
+#include <termios.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -42,6 +47,40 @@ TEST_CASE("help on a command that there is not is refused") {
     check_refused("snapshott --help", "unknown command 'snapshott'");
     CHECK(run_puckloop("--help").status == 0);
     CHECK(run_puckloop("run --help").status == 0);
+}
+
+TEST_CASE("upload: --baud is the port's rate, and a script leaves each row its time on the line") {
+    const std::string image = std::string(PUCKLOOP_SOURCE) + "/firmware/bluetooth/talk.hex";
+    const int port = ::posix_openpt(O_RDWR | O_NOCTTY);
+    REQUIRE(port >= 0);
+    REQUIRE(::grantpt(port) == 0);
+    REQUIRE(::unlockpt(port) == 0);
+    const std::string name = ::ptsname(port);
+    for (const auto& [option, rate] :
+         {std::pair<std::string, speed_t>{"--baud 9600", B9600}, {"--baud 57600", B57600}, {"", B115200}}) {
+        INFO(option);
+        const Result nobody = run_puckloop("upload " + image + " " + name + " --wait 0.1 " + option);
+        CHECK(nobody.status == 1);
+        termios settings{};
+        REQUIRE(::tcgetattr(port, &settings) == 0);
+        CHECK(cfgetospeed(&settings) == rate);
+    }
+    ::close(port);
+    const auto spaced = [&](const std::string& option) {
+        const fs::path file = scratch_path("rows.txt");
+        fs::remove(file);
+        REQUIRE(run_puckloop("upload " + image + " --script " + file.string() + option).status == 0);
+        std::istringstream lines(text_of(file));
+        std::vector<double> times;
+        for (std::string line; std::getline(lines, line);)
+            times.push_back(std::stod(line));
+        return times.at(3) - times.at(2);
+    };
+    constexpr double kBits = 10 * 101;
+    CHECK(spaced("") == Approx(0.025).margin(0.001));
+    CHECK(spaced(" --baud 9600") > kBits / 9600 + 0.004);
+    CHECK(spaced(" --baud 38400") > kBits / 38400 + 0.004);
+    check_refused("upload " + image + " /dev/null --baud 0", "--baud");
 }
 
 TEST_CASE("the help of puckloop bench explains every case on a line of its own") {

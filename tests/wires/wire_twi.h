@@ -84,6 +84,7 @@ class WireTwi : public WireSlave {
             serve(general_ ? (pulls ? 0x90 : 0x98) : (pulls ? 0x80 : 0x88));
             return;
         case Mode::Transmit:
+            twdr_ = shift_;  // what was on the line
             if (line || !twea_) mode_ = Mode::Idle;
             serve(line ? 0xC0 : twea_ ? 0xB8 : 0xC8);
             return;
@@ -94,10 +95,10 @@ class WireTwi : public WireSlave {
 
     /// The program of the test: what it answers to each status.
     void serve(std::uint8_t status) {
-        // Only what a program may rely on: TWDR is its own in the other states.
-        const bool received =
-            status == 0x60 || status == 0x70 || (status >= 0x80 && status <= 0x98) || status == 0xA8;
-        served_.push_back({status, received ? twdr_ : std::uint8_t{0}});
+        // Only what a program may rely on: the last byte on the line is not that of a bus error or a STOP.
+        const bool shifted = status == 0x60 || status == 0x70 || (status >= 0x80 && status <= 0x98) ||
+                             (status >= 0xA8 && status <= 0xC8);
+        served_.push_back({status, shifted ? twdr_ : std::uint8_t{0}});
         const std::uint16_t drawn = policy_.next();
         const bool may_refuse =
             status == 0x60 || status == 0x70 || status == 0x80 || status == 0x90 || status == 0xB8;

@@ -1,5 +1,7 @@
 #include "tools/cli/check.h"
 
+#include "tools/cli/shown_word.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +19,7 @@ std::string outside(const std::string& text, Number low, Number high) {
     const char* const last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data(), last, value);
     if (error == std::errc{} && end == last && value >= low && value <= high) return {};
-    return fmt::format("'{}' is not a number from {} to {}", text, low, high);
+    return fmt::format("'{}' is not a number from {} to {}", shown_word(text), low, high);
 }
 
 }  // namespace
@@ -38,7 +40,7 @@ Check positive_number() {
     return {[](const std::string& text) {
                 return outside(text, kLeast, kMost).empty()
                            ? std::string()
-                           : fmt::format("'{}' is not a number above 0", text);
+                           : fmt::format("'{}' is not a number above 0", shown_word(text));
             },
             "above 0"};
 }
@@ -58,7 +60,7 @@ Check one_of(const std::vector<std::string>& words) {
     return {[words, list](const std::string& text) {
                 return std::find(words.begin(), words.end(), text) != words.end()
                            ? std::string()
-                           : fmt::format("'{}' is not one of {}", text, list);
+                           : fmt::format("'{}' is not one of {}", shown_word(text), list);
             },
             fmt::format("{{{}}}", fmt::join(words, ","))};
 }

@@ -1,5 +1,7 @@
 #include "tools/cli/time_check.h"
 
+#include "tools/cli/shown_word.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -34,7 +36,8 @@ Check seconds_between(double low, double high) {
                 const std::optional<double> seconds = seconds_of(text);
                 return seconds && *seconds >= low && *seconds <= high
                            ? std::string()
-                           : fmt::format("'{}' is not a time from {:g} to {:g} s", text, low, high);
+                           : fmt::format("'{}' is not a time from {:g} to {:g} s", shown_word(text), low,
+                                         high);
             },
             kTimeShown};
 }

@@ -1,6 +1,8 @@
 #include "tools/cli/usage_error.h"
 
+#include "base/plain_text.h"
 #include "base/suggest.h"
+#include "tools/cli/shown_word.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -11,6 +13,9 @@
 namespace puckloop::tools {
 
 namespace {
+
+// Bytes that are shown of what the library states of a word: its lists are shorter.
+constexpr std::size_t kProblem = 1000;
 
 /// The subcommand that the words reached, or the program itself.
 const CLI::App& command_of(const CLI::App& app) {
@@ -78,12 +83,13 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     std::string help = fmt::format("see puckloop {}--help", in_command ? name + " " : "");
     std::string problem = error.what();
     if (const auto end = problem.find('\n'); end != std::string::npos) problem.resize(end);
+    problem = plain_text(problem, kProblem);
     const std::string word = unexpected_word(app);
     const int code = error.get_exit_code();
     const bool no_command = !in_command && code == static_cast<int>(CLI::ExitCodes::RequiredError);
     if (!word.empty() && (no_command || code == static_cast<int>(CLI::ExitCodes::ExtrasError))) {
         const char* kind = word.starts_with("-") ? "option" : in_command ? "argument" : "command";
-        problem = fmt::format("unknown {} '{}'", kind, word);
+        problem = fmt::format("unknown {} '{}'", kind, shown_word(word));
         const std::string parts = in_command ? parts_of(command) : std::string();
         if (const std::string part = misspelt_part(command); !word.starts_with("-") && !part.empty())
             help = fmt::format("perhaps {} {}; {}", name, part, help);

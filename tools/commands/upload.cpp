@@ -28,8 +28,10 @@ struct UploadOptions {
 };
 
 /// Rows are sent at times of their own, late enough for the flash: nobody reads the answers.
-void write_script(const std::vector<BootPacket>& packets, const std::string& file, double at) {
-    constexpr double kHello = 0.1, kRow = 0.025;  // s; 8.8 ms on the line, 4 ms of erasing and writing
+void write_script(const std::vector<BootPacket>& packets, const std::string& file, double at, double baud) {
+    constexpr double kHello = 0.1, kFlash = 0.0162;  // s; erasing and writing take 4 ms
+    constexpr double kBitsOfRow = 10 * 101;
+    const double row = kFlash + kBitsOfRow / baud;  // 25 ms at 115200
     std::string lines = fmt::format("{:.3f} {:02x}\n", at, kBootHello);
     double time = at + kHello;
     const auto add = [&](const BootPacket& packet) {
@@ -37,7 +39,7 @@ void write_script(const std::vector<BootPacket>& packets, const std::string& fil
         for (const std::uint8_t octet : packet)
             lines += fmt::format(" {:02x}", octet);
         lines += '\n';
-        time += kRow;
+        time += row;
     };
     for (const BootPacket& packet : packets)
         add(packet);
@@ -57,7 +59,7 @@ void run_upload(const UploadOptions& options, int& status) {
         throw InputError("", "upload", "one way to send it is needed", "a PORT or --script FILE");
     const auto packets = boot_packets(image::load_image(options.image));
     if (!options.script.empty()) {
-        write_script(packets, options.script, options.at);
+        write_script(packets, options.script, options.at, options.baud);
     } else {
         const bool terminal = ::isatty(STDERR_FILENO) == 1;
         upload(options.port, packets, options.baud, options.wait, [terminal](double share) {

@@ -46,9 +46,20 @@ Twi::Twi(const Surroundings& around, const cosim::ClockDomain& clock, Ports& por
     around_.interrupts.connect(kVector, this, nullptr);
 }
 
+// A master whose byte is under way, or waits for this unit to let SCL go, finds nobody for the rest of it.
 void Twi::reset() {
+    const State old = state_;
+    const bool open = old.slave_waits || old.step == Step::SlaveAnswer;
+    const Cycle over = old.step == Step::SlaveAnswer ? around_.events.due(slot_) : 0;
     state_ = {};
     around_.events.cancel(slot_);
+    if (!open) return;
+    state_.phase = old.phase;
+    state_.bus_taken = true;
+    if (old.slave_waits)
+        begin_slave_phase();
+    else
+        plan(Step::SlaveAnswer, over);
 }
 
 Cycle Twi::period() const {
@@ -115,7 +126,7 @@ void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
             if (self.state_.owner) self.begin_phase(Kind::Stop, 0, false);
             const bool taken = self.state_.bus_taken;
             self.reset();
-            self.state_.bus_taken = taken;
+            self.state_.bus_taken = self.state_.bus_taken || taken;
             self.show_status(kIdle);
         }
     }
@@ -166,6 +177,11 @@ void Twi::go_on() {
     }
     if (state_.slave) {
         if (state_.slave_waits) begin_slave_phase();
+        return;
+    }
+    if (state_.step == Step::SlaveAnswer) {  // a byte in which this unit has no part any more
+        assign(control(), kTwsto, false);
+        state_.start_waits = control() & kTwsta;
         return;
     }
     if (state_.awaiting || state_.step != Step::None) return;  // an operation is under way
@@ -409,7 +425,8 @@ void Twi::finish_slave_byte(cosim::I2cPhase& answer) {
         return;
     }
     const bool acknowledged = !writes && state_.phase.ack;  // who writes leaves SDA high in the ninth clock
-    answer.byte = static_cast<std::uint8_t>(data() & (writes ? state_.phase.byte : kReleased));
+    // TWDR is the shift register: it holds what was on the line.
+    data() = answer.byte = static_cast<std::uint8_t>(data() & (writes ? state_.phase.byte : kReleased));
     if (writes) answer.ack = 0;
     state_.next_status = !acknowledged ? kStDataNack : (control() & kTwea) ? kStDataAck : kStLastAck;
 }

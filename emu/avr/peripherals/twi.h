@@ -9,9 +9,9 @@
 //     START comes in by slave_phase() first: the unit may be who it speaks to (0x68, 0x78, 0xB0).
 //  3. A byte read from a slave that is to receive is received as ones, with the acknowledge that TWEA asks
 //     for; one written to a slave that is to send is the and of both, and not acknowledged.
-//  4. A START or STOP in the middle of an address byte, or of a byte of ours, is a bus error (0x00); other
-//     units' data bytes are not followed.
-//  5. A STOP or START of another master in the middle of a phase of ours is a bus error (0x00) at once.
+//  4. A START or STOP in the middle of an address byte, or of a byte of ours, is a bus error (0x00), in a
+//     phase of ours at once; other units' data bytes are not followed, TWDR does not hold them.
+//  5. Switched off in the middle of a byte that it sends, the unit has sent ones from its first bit on.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"

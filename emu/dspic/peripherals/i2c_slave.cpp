@@ -56,8 +56,12 @@ bool I2cSlave::matches(std::uint8_t address_byte) const {
     if (con & kI2CxCON["IPMIEN"]) return true;
     if (address_byte == 0) return con & kI2CxCON["GCEN"];
     if (con & kI2CxCON["A10M"]) return matches_first_of_ten(address_byte);
-    const unsigned mask = setup_.has_mask ? reg(kMsk) : 0u;
-    return (((address_byte >> 1) ^ reg(kAdd)) & ~mask & 0x7F) == 0;
+    const unsigned address = address_byte >> 1, mask = setup_.has_mask ? reg(kMsk) : 0u;
+    // Where there is a mask, reserved addresses match never, whatever it is (DS70195, table of reserved
+    // addresses).
+    constexpr unsigned kFirst = 0x08, kLast = 0x77;
+    if (setup_.has_mask && (address < kFirst || address > kLast)) return false;
+    return ((address ^ reg(kAdd)) & ~mask & 0x7F) == 0;
 }
 
 bool I2cSlave::ten_bits() const {

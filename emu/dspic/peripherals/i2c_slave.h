@@ -4,6 +4,7 @@
 // Pins::i2c_slave_answer() when eight clocks have passed since SCL was let go. Source: dsPIC30F Family
 // Reference Manual, section 21, and DS70286; fact sheets peripherals.md section 4 and rab.md section 2.2.
 //
+//   reserved addresses (33FJ: 0x00 to 0x07 without GCEN, 0x78 to 0x7F) match with IPMIEN = 1 only
 //   address, R/W = 0   answer at the 8th clock, SI2CxIF at the 9th; SCL is not held
 //   address, R/W = 1   the same, and SCLREL = 0: SCL is held until the program sets it, TRN loaded; where TRN
 //                      is loaded already (TBF) SCL is not held
@@ -12,8 +13,7 @@
 //   byte received      STREN = 0: answer at the 8th clock, SI2CxIF at the 9th; STREN = 1: deviation 1
 //   overrun            RBF or I2COV still set: no acknowledge; with RBF the byte is lost and I2COV set
 //   byte sent          TBF falls at the 8th clock; SI2CxIF when the master acknowledged, and SCLREL = 0
-//   unless
-//                      TBF is set again by then
+//                      unless TBF is set again by then
 //   not acknowledged   at the end of the 9th clock the slave resets without a sign (DS70068C, 21.7.5): it is
 //                      not addressed any more, whoever clocks on reads ones; a byte that the program put into
 //                      TRN meanwhile is dropped (TBF = 0)

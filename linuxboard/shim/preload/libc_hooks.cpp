@@ -1,7 +1,7 @@
 // printf(), getline(), freopen(), perror() and everything else in the C library that reads or writes calls
-// its functions write(), read() and so on directly, past any library that is preloaded. So the beginning of
-// those functions is replaced by a jump to the ones here. What they do with descriptors that are neither
-// devices nor pipes is what they did before: no time passes.
+// its functions write(), read() and so on directly, past any library that is preloaded; glob(), scandir() and
+// nftw() do so with folders. So the beginning of those functions is replaced by a jump to the ones here. What
+// they do with descriptors that are neither devices nor pipes is what they did before: no time passes.
 
 #include "linuxboard/shim/preload/libc_hooks.h"
 
@@ -12,11 +12,13 @@
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
 
+#include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <gnu/lib-names.h>
 #include <stdio.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <termios.h>
 #include <unistd.h>
@@ -86,9 +88,22 @@ int hooked_tcgetattr(int fd, termios* settings) {
     return tcgetattr(fd, settings);
 }
 
+ssize_t hooked_getdents64(int fd, void* entries, size_t room) {
+    return getdents64(fd, entries, room);
+}
+
+DIR* hooked_opendir(const char* path) {
+    return opendir(path);
+}
+
+int hooked_fstatat64(int folder, const char* path, struct stat64* status, int flags) {
+    return fstatat64(folder, path, status, flags);
+}
+
 struct Hook {
     const char* name;
     std::uintptr_t target;
+    bool recent = false;  ///< older C libraries have it not, and no other that calls it
 };
 template <typename Function>
 std::uintptr_t address(Function* function) {
@@ -147,10 +162,14 @@ void hook_libc() {
         {"dup2", address(hooked_dup2)},
         {"dup3", address(hooked_dup3)},
         {"tcgetattr", address(hooked_tcgetattr)},
+        {"opendir", address(hooked_opendir)},
+        {"getdents64", address(hooked_getdents64), true},
+        {"fstatat64", address(hooked_fstatat64), true},
     };
     void* const libc = dlopen(LIBC_SO, RTLD_LAZY | RTLD_NOLOAD);
     for (const Hook& hook : hooks) {
         void* const function = libc != nullptr ? dlsym(libc, hook.name) : nullptr;
+        if (function == nullptr && hook.recent) continue;
         if (function == nullptr || !replace(function, hook.target))
             refuse(
                 "the C library's functions cannot be taken over (is this glibc, may its code be changed?)");

@@ -125,6 +125,54 @@ TEST_CASE("the default mirror follows the distance curve of ARGoS for a light as
     }
 }
 
+TEST_CASE("LEDs of the turret and of the ring are reported so much too far or near by that curve") {
+    const CameraParameters p = defaults();
+    const Optics omni(CameraKind::Omni, p, {352, 288});
+    const auto reported = [&](double height, double centimetres) {
+        const auto point = omni.project(centimetres / 100, 0.0, height - p.height);
+        REQUIRE(point);
+        return 1.25455 * std::pow(1.03848, std::hypot(point->u - 182, point->v - 144)) / centimetres;
+    };
+    constexpr double kTam = 0.056, kTurret = 0.0755, kRing = 0.040;
+    const std::array<double, 5> turret{1.32, 1.45, 1.40, 1.29, 1.19}, ring{0.65, 0.77, 0.82, 0.82, 0.80};
+    for (std::size_t i = 0; i < turret.size(); ++i) {
+        const double centimetres = 10.0 * static_cast<double>(i + 1);
+        INFO(centimetres << " cm");
+        CHECK(reported(kTurret, centimetres) == Approx(turret[i]).margin(0.006));
+        CHECK(reported(kRing, centimetres) == Approx(ring[i]).margin(0.006));
+        CHECK(reported(kTam, centimetres) == Approx(1.0).margin(0.16));
+    }
+}
+
+TEST_CASE("a LED of the turret is seen as large as the published blobs at 10 cm") {
+    World world = world_with_robot(2.0, 2.0);
+    world.parameters["camera.noise"] = 0.0;
+    world.ambient_light = 0.0;
+    world.robots.push_back(robot_at("e2", 0.1, 0.0, 0.0));
+    const CameraSignals ids(world);
+    const auto area_at = [&](double distance) {
+        CameraScene scene(world);
+        scene.change(ids.pose(1), distance);
+        scene.change(ids.turret(1, 0), 1.0);  // red of the first
+        std::vector<Glow> glows;
+        scene.glows(0, glows);
+        for (const Glow& glow : glows)  // that one stands where it is asked for
+            if (glow.level[0] > 0) scene.change(ids.pose(1), 2 * distance - std::hypot(glow.x, glow.y));
+        const ImageSize size{352, 288};
+        CameraView view(CameraKind::Omni, scene, 0, "e1", 1);
+        std::vector<std::uint8_t> rgb(size.width * size.height * 3);
+        view.render(size, {}, 0, rgb);
+        int area = 0;
+        for (std::size_t i = 0; i < rgb.size(); i += 3)
+            area += rgb[i] > 128;
+        return area;
+    };
+    const auto published = [](double distance) { return 95.644 * std::exp(-11.0 * distance); };
+    CHECK(area_at(0.10) == Approx(published(0.10)).epsilon(0.15));
+    CHECK(area_at(0.15) == Approx(published(0.15)).epsilon(0.40));
+    CHECK(area_at(0.20) == Approx(published(0.20)).epsilon(0.70));
+}
+
 namespace {
 
 /// What a ray ends on, by going along it in small steps.

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
 #include "linuxboard/shim/preload/descriptors/video_names.h"
 #include "linuxboard/shim/preload/files/shared_calls.h"
+#include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
@@ -14,11 +15,15 @@
 #include "linuxboard/shim/preload/scheduler/board_clock.h"
 #include "linuxboard/shim/preload/scheduler/outside_news.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/scheduler/signal_origins.h"
 #include "linuxboard/shim/preload/scheduler/timers.h"
 #include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
+#include <sys/signalfd.h>
+#include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -327,6 +332,10 @@ int control(int fd, int command, long argument, decltype(&::fcntl) real) {
         return wait_for_lock(fd, command, reinterpret_cast<void*>(argument));
     if (active() && is_about_owner(command)) return control_owner(fd, command, argument, real);
     const int result = real(fd, command, argument);
+    if (active() && result == 0 && (command == F_GETLK || command == F_OFD_GETLK)) {
+        auto* const lock = reinterpret_cast<struct flock*>(argument);
+        if (lock->l_type != F_UNLCK && lock->l_pid > 0) lock->l_pid = program_process(lock->l_pid);
+    }
     if (active() && result >= 0 && (command == F_DUPFD || command == F_DUPFD_CLOEXEC)) copied(fd, result);
     return result;
 }
@@ -348,9 +357,34 @@ SHIM_EXPORT int fcntl64(int fd, int command, ...) {
     return control(fd, command, argument, REAL(fcntl64));
 }
 
+namespace {
+bool is_signal_descriptor(int fd) {
+    char link[40], target[32];
+    std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+    const int error = errno;
+    const long size = host_call(SYS_readlinkat, AT_FDCWD, reinterpret_cast<long>(link),
+                                reinterpret_cast<long>(target), sizeof target);
+    errno = error;
+    constexpr char kTarget[] = "anon_inode:[signalfd]";
+    return size == sizeof kTarget - 1 && std::memcmp(target, kTarget, sizeof kTarget - 1) == 0;
+}
+
+/// What has been read into `buffer`: if it is signals, their senders are those of the board.
+void show_senders(int fd, void* buffer, ssize_t size) {
+    auto* const records = static_cast<signalfd_siginfo*>(buffer);
+    constexpr ssize_t kSize = sizeof(signalfd_siginfo);
+    if (!active() || size < kSize || size % kSize != 0 || records->ssi_signo >= NSIG) return;
+    if (!is_signal_descriptor(fd)) return;
+    for (ssize_t i = 0; i < size / kSize; ++i)
+        show_origin(records[i]);
+}
+}  // namespace
+
 SHIM_EXPORT ssize_t read(int fd, void* buffer, size_t size) {
     if (OpenFile* file = open_file(fd)) return read_device(*file, buffer, size);
-    return outside(fd, POLLIN, [&] { return REAL(read)(fd, buffer, size); });
+    const ssize_t result = outside(fd, POLLIN, [&] { return REAL(read)(fd, buffer, size); });
+    show_senders(fd, buffer, result);
+    return result;
 }
 
 SHIM_EXPORT ssize_t __read_chk(int fd, void* buffer, size_t size, size_t room) {
@@ -401,7 +435,16 @@ bool get_parts(Parts& parts, const iovec* theirs, int count) {
 
 SHIM_EXPORT ssize_t readv(int fd, const iovec* theirs, int count) {
     OpenFile* file = open_file(fd);
-    if (file == nullptr) return outside(fd, POLLIN, [&] { return REAL(readv)(fd, theirs, count); });
+    if (file == nullptr) {
+        ssize_t left = outside(fd, POLLIN, [&] { return REAL(readv)(fd, theirs, count); });
+        const ssize_t result = left;
+        for (const iovec* part = theirs; left > 0; ++part) {
+            const ssize_t size = std::min(left, static_cast<ssize_t>(part->iov_len));
+            show_senders(fd, part->iov_base, size);
+            left -= size;
+        }
+        return result;
+    }
     Parts parts;
     if (!get_parts(parts, theirs, count)) return -1;
     std::vector<char> data(std::min<std::size_t>(parts.size, wire::kVideoBufferSize));

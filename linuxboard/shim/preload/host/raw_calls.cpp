@@ -2,12 +2,15 @@
 
 #include "linuxboard/shim/preload/host/host.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdarg>
 #include <cstring>
 
@@ -86,6 +89,56 @@ int raw_tcgetattr(int fd, termios* settings) {
     return 0;
 }
 
+ssize_t raw_getdents64(int fd, void* entries, size_t room) {
+    return host_call(SYS_getdents64, fd, number_of(entries), static_cast<long>(room));
+}
+
+DIR* raw_opendir(const char* path) {
+    constexpr long kFlags = O_RDONLY | O_NONBLOCK | O_DIRECTORY | O_CLOEXEC;
+    const int fd = static_cast<int>(host_call(SYS_openat, AT_FDCWD, number_of(path), kFlags));
+    if (fd < 0) return nullptr;
+    DIR* const folder = fdopendir(fd);
+    if (folder == nullptr) {
+        const int error = errno;
+        host_call(SYS_close, fd);
+        errno = error;
+    }
+    return folder;
+}
+
+// The kernel's struct is the C library's, of both names, on the processors that there is a library for.
+static_assert(sizeof(struct stat) == sizeof(struct stat64));
+int raw_fstatat(int folder, const char* path, struct stat* status, int flags) {
+    return static_cast<int>(host_call(SYS_newfstatat, folder, number_of(path), number_of(status), flags));
+}
+
+int raw_stat(const char* path, struct stat* status) {
+    return raw_fstatat(AT_FDCWD, path, status, 0);
+}
+
+int raw_lstat(const char* path, struct stat* status) {
+    return raw_fstatat(AT_FDCWD, path, status, AT_SYMLINK_NOFOLLOW);
+}
+
+int raw_fstat(int fd, struct stat* status) {
+    if (fd >= 0) return raw_fstatat(fd, "", status, AT_EMPTY_PATH);
+    errno = EBADF;
+    return -1;
+}
+
+// Of programs that were linked with a C library older than 2.33.
+int raw_xstat(int, const char* path, struct stat* status) {
+    return raw_stat(path, status);
+}
+
+int raw_lxstat(int, const char* path, struct stat* status) {
+    return raw_lstat(path, status);
+}
+
+int raw_fxstat(int, int fd, struct stat* status) {
+    return raw_fstat(fd, status);
+}
+
 struct Raw {
     const char* name;
     void* function;
@@ -104,7 +157,15 @@ void* raw_function(const char* name) {
         {"lseek", address(raw_lseek)},         {"lseek64", address(raw_lseek)},
         {"close", address(raw_close)},         {"dup", address(raw_dup)},
         {"dup2", address(raw_dup2)},           {"dup3", address(raw_dup3)},
-        {"tcgetattr", address(raw_tcgetattr)},
+        {"tcgetattr", address(raw_tcgetattr)}, {"getdents64", address(raw_getdents64)},
+        {"opendir", address(raw_opendir)},     {"stat", address(raw_stat)},
+        {"stat64", address(raw_stat)},         {"lstat", address(raw_lstat)},
+        {"lstat64", address(raw_lstat)},       {"fstat", address(raw_fstat)},
+        {"fstat64", address(raw_fstat)},       {"fstatat", address(raw_fstatat)},
+        {"fstatat64", address(raw_fstatat)},   {"__xstat", address(raw_xstat)},
+        {"__xstat64", address(raw_xstat)},     {"__lxstat", address(raw_lxstat)},
+        {"__lxstat64", address(raw_lxstat)},   {"__fxstat", address(raw_fxstat)},
+        {"__fxstat64", address(raw_fxstat)},
     };
     for (const Raw& raw : list)
         if (std::strcmp(raw.name, name) == 0) return raw.function;

@@ -1,12 +1,15 @@
 // What folders hold that are other on the board: /proc has its processes and not the host's, /dev the devices
-// of the scenario too, /proc/self/fd no descriptors of this library. Deviation: scandir() and glob() of the
-// C library, which read folders past any library that is preloaded, show the host's.
+// of the scenario too, /proc/self/fd no descriptors of this library. All ways to list a folder end in
+// getdents64(), the C library's own too (libc_hooks.cpp): readdir(), scandir(), glob(), nftw(), fts_read().
+// Deviation: nftw() and fts_read() open the folders below one relative to it, past this library, and so come
+// not into /proc/NUMBER; nftw() ends there.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
+#include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
 
@@ -15,7 +18,9 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -23,138 +28,151 @@
 using namespace puckloop::shim;
 
 namespace {
-struct Listing {
-    enum class Kind { Processes, Devices, Descriptors };
-    DIR* stream = nullptr;
-    Kind kind = Kind::Processes;
-    std::uint32_t next = 0;  ///< process slot or device to be shown next, once the host's entries are through
-    bool seen[wire::kMaximumDevices] = {};  ///< devices that the host has, too
-    dirent entry{};
-};
-constexpr int kMostListings = 16;
-Listing listings[kMostListings];
+enum class Folder { Other, Processes, Devices, Descriptors };
 
-Listing* listing_of(const DIR* stream) {
-    for (Listing& listing : listings)
-        if (listing.stream == stream && stream != nullptr) return &listing;
-    return nullptr;
-}
+/// Places of the board's own entries in a folder, behind all of the host's: process number or device. The
+/// kernel keeps the place with the open folder, so that rewinddir(), seekdir(), dup() and fork() need
+/// nothing.
+constexpr off_t kOwnEntries = off_t{1} << 30, kMostOwnEntries = off_t{1} << 29;
 
 bool is_number(const char* text) {
     return *text != '\0' && text[std::strspn(text, "0123456789")] == '\0';
 }
 
-DIR* begin_listing(DIR* stream) {
-    if (stream == nullptr || !active()) return stream;
+Folder folder_of(int fd) {
     const int error = errno;
     char link[40], path[80];
-    std::snprintf(link, sizeof link, "/proc/self/fd/%d", dirfd(stream));
+    std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
     const long size = host_call(SYS_readlinkat, AT_FDCWD, reinterpret_cast<long>(link),
                                 reinterpret_cast<long>(path), sizeof path - 1);
     errno = error;
-    if (size <= 0) return stream;
+    if (size <= 0) return Folder::Other;
     path[size] = '\0';
+    if (std::strcmp(path, "/proc") == 0) return Folder::Processes;
+    if (std::strcmp(path, "/dev") == 0) return Folder::Devices;
     int process = 0, end = 0;
     const bool descriptors = std::sscanf(path, "/proc/%d/fd%n", &process, &end) == 1 && end == size &&
                              program_process(process) != 0;
-    Listing begun;
-    begun.stream = stream;
-    if (std::strcmp(path, "/proc") == 0) {
-        begun.kind = Listing::Kind::Processes;
-    } else if (std::strcmp(path, "/dev") == 0) {
-        begun.kind = Listing::Kind::Devices;
-    } else if (descriptors) {
-        begun.kind = Listing::Kind::Descriptors;
-    } else {
-        return stream;
-    }
-    for (Listing& listing : listings) {
-        if (listing.stream != nullptr) continue;
-        listing = begun;
-        break;
-    }
-    return stream;
+    return descriptors ? Folder::Descriptors : Folder::Other;
 }
 
-/// The name of a device directly in /dev, or nullptr.
-const char* name_in_dev(const wire::DeviceName& device) {
+/// An entry of the host's that the board has not.
+bool hides(Folder folder, const char* name) {
+    if (!is_number(name)) return false;
+    return folder == Folder::Processes ||
+           (folder == Folder::Descriptors && is_link_descriptor(std::atoi(name)));
+}
+
+/// Takes the hidden entries out; returns the bytes that are left.
+ssize_t without_hidden(Folder folder, char* entries, ssize_t size) {
+    ssize_t kept = 0;
+    for (ssize_t at = 0; at < size;) {
+        auto* const entry = reinterpret_cast<dirent64*>(entries + at);
+        const ssize_t length = entry->d_reclen;
+        if (!hides(folder, entry->d_name)) {
+            std::memmove(entries + kept, entry, static_cast<std::size_t>(length));
+            kept += length;
+        }
+        at += length;
+    }
+    return kept;
+}
+
+/// The name of a device directly in /dev that the host has not, or nullptr.
+const char* name_of_device(std::uint32_t index) {
+    const wire::DeviceName& device = page().devices[index];
     constexpr char kFolder[] = "/dev/";
     if (device.kind == wire::DeviceKind::None || std::strncmp(device.path, kFolder, sizeof kFolder - 1) != 0)
         return nullptr;
     const char* name = device.path + sizeof kFolder - 1;
-    return std::strchr(name, '/') == nullptr ? name : nullptr;
+    if (std::strchr(name, '/') != nullptr) return nullptr;
+    const int error = errno;
+    const bool shown = host_call(SYS_faccessat, AT_FDCWD, reinterpret_cast<long>(device.path), F_OK) == 0;
+    errno = error;
+    return shown ? nullptr : name;
 }
 
-/// An entry of the host's that the board has, too.
-bool shows(Listing& listing, const dirent& entry) {
-    switch (listing.kind) {
-    case Listing::Kind::Processes:
-        return !is_number(entry.d_name);
-    case Listing::Kind::Descriptors:
-        return !is_number(entry.d_name) || !is_link_descriptor(std::atoi(entry.d_name));
-    case Listing::Kind::Devices:
-        for (std::uint32_t i = 0; i < wire::kMaximumDevices; ++i) {
-            const char* name = name_in_dev(page().devices[i]);
-            if (name != nullptr && std::strcmp(name, entry.d_name) == 0) listing.seen[i] = true;
+struct Own {
+    off_t place = -1;  ///< -1: there is none
+    char name[wire::kNameLength] = {};
+    unsigned char type = DT_UNKNOWN;
+};
+
+/// The board's first entry from `place` on.
+Own own_entry(Folder folder, off_t place) {
+    Own own;
+    if (folder == Folder::Processes) {
+        for (const wire::ProcessEntry& process : page().processes) {
+            const off_t number = process.number;
+            if (process.state == wire::ProcessEntry::Free || number < place) continue;
+            if (own.place < 0 || number < own.place) own.place = number;
         }
-        break;
+        own.type = DT_DIR;
+        std::snprintf(own.name, sizeof own.name, "%lld", static_cast<long long>(own.place));
+    } else if (folder == Folder::Devices) {
+        for (off_t device = place; device < wire::kMaximumDevices; ++device) {
+            const char* name = name_of_device(static_cast<std::uint32_t>(device));
+            if (name == nullptr) continue;
+            own.place = device;
+            own.type = DT_CHR;
+            std::snprintf(own.name, sizeof own.name, "%s", name);
+            break;
+        }
     }
-    return true;
+    return own;
 }
 
-/// What the host has not: one entry, or nullptr when all have been shown.
-dirent* next_of_board(Listing& listing) {
-    dirent& entry = listing.entry;
-    entry = {};
-    entry.d_reclen = sizeof entry;
-    while (listing.kind == Listing::Kind::Processes && listing.next < wire::kMaximumProcesses) {
-        const wire::ProcessEntry& process = page().processes[listing.next++];
-        if (process.state == wire::ProcessEntry::Free) continue;
-        std::snprintf(entry.d_name, sizeof entry.d_name, "%d", process.number);
-        entry.d_ino = static_cast<ino_t>(process.number);
-        entry.d_type = DT_DIR;
-        return &entry;
+/// As many of the board's entries from `place` on as there is room for.
+ssize_t own_entries(Folder folder, int fd, off_t place, void* theirs, std::size_t room) {
+    char list[4096];
+    room = std::min(room, sizeof list);
+    std::size_t used = 0;
+    Own own = own_entry(folder, place);
+    while (own.place >= 0) {
+        constexpr std::size_t kHead = offsetof(dirent64, d_name), kAligned = alignof(dirent64);
+        const std::size_t length = (kHead + std::strlen(own.name) + 1 + kAligned - 1) / kAligned * kAligned;
+        if (used + length > room) break;
+        auto* const entry = reinterpret_cast<dirent64*>(list + used);
+        std::memset(list + used, 0, length);
+        place = own.place + 1;
+        entry->d_ino = static_cast<ino64_t>(place);
+        entry->d_off = kOwnEntries + place;
+        entry->d_reclen = static_cast<unsigned short>(length);
+        entry->d_type = own.type;
+        std::memcpy(list + used + kHead, own.name, std::strlen(own.name));
+        used += length;
+        own = own_entry(folder, place);
     }
-    while (listing.kind == Listing::Kind::Devices && listing.next < wire::kMaximumDevices) {
-        const std::uint32_t device = listing.next++;
-        const char* name = name_in_dev(page().devices[device]);
-        if (name == nullptr || listing.seen[device]) continue;
-        std::snprintf(entry.d_name, sizeof entry.d_name, "%s", name);
-        constexpr ino_t kFirstNumber = 1;
-        entry.d_ino = kFirstNumber + device;
-        entry.d_type = DT_CHR;
-        return &entry;
+    if (used == 0 && own.place >= 0) {
+        errno = EINVAL;
+        return -1;
     }
-    return nullptr;
-}
-
-dirent* next_entry(DIR* stream) {
-    Listing* listing = active() ? listing_of(stream) : nullptr;
-    if (listing == nullptr) return REAL(readdir)(stream);
-    while (dirent* entry = listing->next == 0 ? REAL(readdir)(stream) : nullptr)
-        if (shows(*listing, *entry)) return entry;
-    return next_of_board(*listing);
+    if (REAL(lseek)(fd, kOwnEntries + place, SEEK_SET) < 0) return 0;
+    return copy_to_program(theirs, list, used) ? static_cast<ssize_t>(used) : -1;
 }
 }  // namespace
 
+SHIM_EXPORT ssize_t getdents64(int fd, void* entries, size_t room) noexcept {
+    const Folder folder = active() ? folder_of(fd) : Folder::Other;
+    if (folder == Folder::Other) return REAL(getdents64)(fd, entries, room);
+    off_t place = REAL(lseek)(fd, 0, SEEK_CUR) - kOwnEntries;
+    if (place < 0 || place >= kMostOwnEntries) {
+        while (true) {
+            const ssize_t size = REAL(getdents64)(fd, entries, room);
+            if (size < 0) return size;
+            if (size == 0) break;
+            const ssize_t kept = without_hidden(folder, static_cast<char*>(entries), size);
+            if (kept > 0) return kept;
+        }
+        place = 0;
+    }
+    return folder == Folder::Descriptors ? 0 : own_entries(folder, fd, place, entries, room);
+}
+
 SHIM_EXPORT DIR* opendir(const char* path) {
-    return begin_listing(REAL(opendir)(ProcessPath(path)));
-}
-SHIM_EXPORT DIR* fdopendir(int fd) {
-    return begin_listing(REAL(fdopendir)(fd));
-}
-SHIM_EXPORT dirent* readdir(DIR* stream) {
-    return next_entry(stream);
-}
-SHIM_EXPORT dirent64* readdir64(DIR* stream) {
-    static_assert(sizeof(dirent64) == sizeof(dirent));
-    return reinterpret_cast<dirent64*>(next_entry(stream));
-}
-SHIM_EXPORT void rewinddir(DIR* stream) noexcept {
-    if (Listing* listing = listing_of(stream)) listing->next = 0;
-    REAL(rewinddir)(stream);
-}
-SHIM_EXPORT int closedir(DIR* stream) {
-    if (Listing* listing = listing_of(stream)) *listing = {};
-    return REAL(closedir)(stream);
+    if (device_of(path) != kNoDevice) {
+        errno = ENOTDIR;
+        return nullptr;
+    }
+    return REAL(opendir)(ProcessPath(path));
 }

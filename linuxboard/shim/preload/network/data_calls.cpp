@@ -1,6 +1,7 @@
 // What moves data through sockets: send, recv and their kin.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
@@ -246,9 +247,37 @@ SHIM_EXPORT ssize_t sendto(int fd, const void* data, size_t size, int flags, con
     return send_message(*file, message, flags);
 }
 
+namespace {
+/// Calls `change` for the process number of each part of the control data that has one; sockets of the host.
+template <typename Change>
+void change_credentials(msghdr& message, Change change) {
+    for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
+        const bool has_number = part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_CREDENTIALS &&
+                                part->cmsg_len >= CMSG_LEN(sizeof(ucred));
+        if (has_number) change(reinterpret_cast<ucred*>(CMSG_DATA(part))->pid);
+    }
+}
+
+/// A copy of the control data with the host's numbers. What is bad is the host's to find.
+ssize_t send_outside(int fd, const msghdr* theirs, int flags) {
+    constexpr std::size_t kMostControl = 1024;  // longer than any with a number: some descriptors
+    msghdr message{};
+    if (!get_from_program(message, theirs)) return -1;
+    alignas(cmsghdr) char control[kMostControl];
+    if (message.msg_control != nullptr && message.msg_controllen <= sizeof control &&
+        copy_from_program(control, message.msg_control, message.msg_controllen)) {
+        message.msg_control = control;
+        change_credentials(message, [](pid_t& number) {
+            if (const pid_t host = host_process(number); host > 0) number = host;
+        });
+    }
+    return REAL(sendmsg)(fd, &message, flags);
+}
+}  // namespace
+
 SHIM_EXPORT ssize_t sendmsg(int fd, const msghdr* theirs, int flags) {
     OpenFile* file = socket_file(fd);
-    if (file == nullptr) return REAL(sendmsg)(fd, theirs, flags);
+    if (file == nullptr) return active() ? send_outside(fd, theirs, flags) : REAL(sendmsg)(fd, theirs, flags);
     msghdr message{};
     return get_from_program(message, theirs) ? send_message(*file, message, flags) : -1;
 }
@@ -308,8 +337,12 @@ SHIM_EXPORT ssize_t recvmsg(int fd, msghdr* theirs, int flags) {
         const std::int64_t received = receive_message(*file, message, flags);
         return received >= 0 && !put_to_program(theirs, message) ? -1 : received;
     }
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvmsg)(fd, theirs, flags);
-    return outside(fd, POLLIN, [&] { return REAL(recvmsg)(fd, theirs, flags); });
+    const ssize_t received = (flags & MSG_DONTWAIT) != 0
+                                 ? REAL(recvmsg)(fd, theirs, flags)
+                                 : outside(fd, POLLIN, [&] { return REAL(recvmsg)(fd, theirs, flags); });
+    if (active() && received >= 0)
+        change_credentials(*theirs, [](pid_t& number) { number = program_process(number); });
+    return received;
 }
 
 SHIM_EXPORT int recvmmsg(int fd, mmsghdr* theirs, unsigned count, int flags, timespec* timeout) {

@@ -1,6 +1,7 @@
 // socket() and the calls that set a socket up.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/process_numbers.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
@@ -253,7 +254,12 @@ SHIM_EXPORT int setsockopt(int fd, int level, int name, const void* value, sockl
 
 SHIM_EXPORT int getsockopt(int fd, int level, int name, void* value, socklen_t* length) noexcept {
     OpenFile* file = socket_file(fd);
-    if (file == nullptr) return REAL(getsockopt)(fd, level, name, value, length);
+    if (file == nullptr) {
+        const int result = REAL(getsockopt)(fd, level, name, value, length);
+        if (active() && result == 0 && level == SOL_SOCKET && name == SO_PEERCRED && *length >= sizeof(pid_t))
+            *static_cast<pid_t*>(value) = program_process(*static_cast<const pid_t*>(value));
+        return result;
+    }
     mark_call("getsockopt");
     charge(page().charges.device);
     socklen_t room = 0;

@@ -10,13 +10,18 @@
 
 #include <sched.h>
 #include <signal.h>
+#include <sys/ipc.h>
+#include <sys/msg.h>
 #include <sys/resource.h>
+#include <sys/sem.h>
+#include <sys/shm.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdarg>
 
 extern "C" int pidfd_open(pid_t process, unsigned flags) noexcept;
 
@@ -160,6 +165,41 @@ SHIM_EXPORT ssize_t process_vm_writev(pid_t process, const iovec* local, unsigne
     return with_host_number(process, [&](pid_t host) {
         return REAL(process_vm_writev)(host, local, parts, remote, remote_parts, flags);
     });
+}
+
+namespace {
+template <typename Status>
+bool is_shown(int result, int command, const Status* status) {
+    return active() && result >= 0 && status != nullptr && command == IPC_STAT;
+}
+}  // namespace
+
+// Who was last at a queue, a semaphore or shared memory.
+SHIM_EXPORT int msgctl(int queue, int command, msqid_ds* status) noexcept {
+    const int result = REAL(msgctl)(queue, command, status);
+    if (is_shown(result, command, status)) {
+        status->msg_lspid = program_process(status->msg_lspid);
+        status->msg_lrpid = program_process(status->msg_lrpid);
+    }
+    return result;
+}
+
+SHIM_EXPORT int shmctl(int memory, int command, shmid_ds* status) noexcept {
+    const int result = REAL(shmctl)(memory, command, status);
+    if (is_shown(result, command, status)) {
+        status->shm_cpid = program_process(status->shm_cpid);
+        status->shm_lpid = program_process(status->shm_lpid);
+    }
+    return result;
+}
+
+SHIM_EXPORT int semctl(int set, int number, int command, ...) noexcept {
+    std::va_list arguments;
+    va_start(arguments, command);
+    const long argument = va_arg(arguments, long);  // of a union, or none
+    va_end(arguments);
+    const int result = REAL(semctl)(set, number, command, argument);
+    return active() && command == GETPID && result > 0 ? program_process(result) : result;
 }
 
 SHIM_EXPORT int sigqueue(pid_t process, int number, const sigval value) noexcept {

@@ -130,6 +130,8 @@ bool watches() {
     return false;
 }
 
+Thread* signal_taker(int number);
+
 /// Those of `signals` that come to nothing: they interrupt no call.
 std::uint64_t ignored_signals(std::uint64_t signals) {
     constexpr std::uint64_t kIgnoredByDefault = std::uint64_t{1} << SIGCHLD | std::uint64_t{1} << SIGCONT |
@@ -138,6 +140,8 @@ std::uint64_t ignored_signals(std::uint64_t signals) {
     for (int number = 1; number < NSIG; ++number) {
         const std::uint64_t bit = std::uint64_t{1} << number;
         if ((signals & bit) == 0 || is_awaited(number)) continue;
+        // One that is blocked is never ignored: sigwait() or a signalfd() may take it.
+        if (thread_total > 0 && signal_taker(number) == nullptr) continue;
         struct sigaction action {};
         sigaction(number, nullptr, &action);
         const bool by_default = action.sa_handler == SIG_DFL && (kIgnoredByDefault & bit) != 0;
@@ -290,6 +294,7 @@ void route_signal() {
         // All block it: it is kept by the host, for sigpending(), sigwait() and the one that unblocks it.
         const std::uint64_t bit = std::uint64_t{1} << number;
         pending_signals &= ~bit;
+        if ((from_node & bit) != 0) expect_origin(number);
         from_node &= ~bit;
         host_call(SYS_kill, host_call(SYS_getpid), number);
         external_changed();  // a signalfd() is readable
@@ -580,7 +585,8 @@ void cancel_thread(Thread* thread) {
 
 void direct_signal(Thread* thread, int number) {
     const std::uint64_t bit = std::uint64_t{1} << number;
-    if (ignored_signals(bit) != 0) return;
+    const std::uint64_t blocked = thread == current ? own_mask() : thread->blocked;
+    if ((blocked & bit) == 0 && ignored_signals(bit) != 0) return;
     if (thread->awaited_signals != nullptr && sigismember(thread->awaited_signals, number) == 1) {
         own().origins[number] = {own().number, 0, 0};
         thread->taken_signal = number;

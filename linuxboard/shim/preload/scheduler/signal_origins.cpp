@@ -50,6 +50,12 @@ void forget_origin(int number) {
     due[number] = 0;
 }
 
+bool take_origin(int number) {
+    const bool expected = due[number] != 0;
+    due[number] = 0;
+    return expected;
+}
+
 void show_origin(int number, siginfo_t& info) {
     const wire::SignalOrigin origin = own().origins[number];
     info.si_code = SI_USER;
@@ -59,6 +65,20 @@ void show_origin(int number, siginfo_t& info) {
     const int status = origin.status;
     info.si_code = WIFEXITED(status) ? CLD_EXITED : WCOREDUMP(status) ? CLD_DUMPED : CLD_KILLED;
     info.si_status = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
+}
+
+void show_origin(signalfd_siginfo& record) {
+    if (record.ssi_signo == 0 || record.ssi_signo >= NSIG) return;
+    const auto number = static_cast<int>(record.ssi_signo);
+    siginfo_t info{};
+    info.si_code = record.ssi_code;
+    info.si_pid = static_cast<pid_t>(record.ssi_pid);
+    info.si_uid = record.ssi_uid;
+    translate(number, info);
+    if (number == SIGCHLD && info.si_code != record.ssi_code) record.ssi_status = info.si_status;
+    record.ssi_code = info.si_code;
+    record.ssi_pid = static_cast<std::uint32_t>(info.si_pid);
+    record.ssi_uid = info.si_uid;
 }
 
 int set_informed_action(int number, const struct sigaction* next, struct sigaction* before) {

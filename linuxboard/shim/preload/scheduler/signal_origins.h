@@ -3,6 +3,7 @@
 // status.
 
 #include <signal.h>
+#include <sys/signalfd.h>
 
 namespace puckloop::shim {
 
@@ -10,8 +11,12 @@ namespace puckloop::shim {
 /// And that it has been taken.
 void expect_origin(int number);
 void forget_origin(int number);
+/// One that the host kept has been taken: whether it was such a signal.
+bool take_origin(int number);
 /// Who sent such a signal.
 void show_origin(int number, siginfo_t& info);
+/// The same in what a descriptor of signals gave (signalfd()).
+void show_origin(signalfd_siginfo& record);
 
 /// sigaction() of a signal whose handler may ask for the sender.
 int set_informed_action(int number, const struct sigaction* next, struct sigaction* before);

@@ -4,6 +4,7 @@
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <mqueue.h>
 #include <poll.h>
@@ -23,6 +24,9 @@
 #include <sys/timerfd.h>
 #include <sys/uio.h>
 #include <unistd.h>
+
+#include <cstddef>
+#include <cstring>
 
 namespace puckloop::shim {
 
@@ -51,12 +55,29 @@ long pselect6(const Argument (&a)[6]) {
     if (a[5].value != 0 && !copy_from_program(mask, a[5], sizeof mask)) return -1;
     return pselect(a[0], a[1], a[2], a[3], a[4], Mask(mask[0]));
 }
+
+#if defined(__x86_64__)
+/// The older call's entries are as long as those of getdents64(), with the type in the last byte.
+long getdents(int fd, char* entries, std::size_t room) {
+    constexpr std::size_t kType = offsetof(dirent64, d_type), kName = offsetof(dirent64, d_name);
+    const ssize_t size = getdents64(fd, entries, room);
+    for (char* entry = entries; entry < entries + size;) {
+        const std::size_t length = reinterpret_cast<const dirent64*>(entry)->d_reclen;
+        const char type = entry[kType];
+        std::memmove(entry + kType, entry + kName, length - kName);
+        entry[length - 1] = type;
+        entry += length;
+    }
+    return size;
+}
+#endif
 }  // namespace
 
 bool file_syscall(long number, const Argument (&a)[6], long* result) {
     switch (number) {
 #if defined(__x86_64__)
         PUCKLOOP_SYSCALL(dup2, dup2(a[0], a[1]));
+        PUCKLOOP_SYSCALL(getdents, getdents(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(pipe, pipe(a[0]));
         PUCKLOOP_SYSCALL(poll, poll(static_cast<pollfd*>(a[0]), a[1], a[2]));
         PUCKLOOP_SYSCALL(select, select(a[0], a[1], a[2], a[3], a[4]));
@@ -66,6 +87,7 @@ bool file_syscall(long number, const Argument (&a)[6], long* result) {
 #endif
         PUCKLOOP_SYSCALL(close, close(a[0]));
         PUCKLOOP_SYSCALL(close_range, close_range(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(getdents64, getdents64(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(dup, dup(a[0]));
         PUCKLOOP_SYSCALL(dup3, dup3(a[0], a[1], a[2]));
         PUCKLOOP_SYSCALL(pipe2, pipe2(a[0], a[1]));

@@ -10,8 +10,11 @@
 
 #include <linux/sched.h>
 #include <sched.h>
+#include <sys/msg.h>
 #include <sys/random.h>
 #include <sys/resource.h>
+#include <sys/sem.h>
+#include <sys/shm.h>
 #include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <sys/wait.h>
@@ -90,6 +93,9 @@ bool of_host_process(long number, const Argument (&a)[6], long* result) {
 
 bool process_syscall(long number, const Argument (&a)[6], long* result) {
     switch (number) {
+        PUCKLOOP_SYSCALL(msgctl, msgctl(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(shmctl, shmctl(a[0], a[1], a[2]));
+        PUCKLOOP_SYSCALL(semctl, semctl(a[0], a[1], a[2], a[3].value));
 #if defined(__x86_64__)
         PUCKLOOP_SYSCALL(getpgrp, getpgrp());
         PUCKLOOP_SYSCALL(getrlimit, getrlimit(static_cast<__rlimit_resource_t>(a[0].value), a[1]));

@@ -64,7 +64,7 @@ int await_signal(const sigset_t* set, Time deadline) {
     // One that came while it was blocked is kept by the host.
     const timespec at_once{};
     if (const int kept = REAL(sigtimedwait)(set, nullptr, &at_once); kept > 0) {
-        own().origins[kept] = {own().number, 0, 0};
+        if (!take_origin(kept)) own().origins[kept] = {own().number, 0, 0};
         return kept;
     }
     Thread* me = self();
