@@ -93,6 +93,12 @@ Image parse_image(std::string_view bytes, const std::string& file) {
     return image;
 }
 
+void check_hash(const std::string& file, const std::string& sha256, const std::string& expected) {
+    if (!expected.empty() && sha256 != expected)
+        throw InputError(file, "", "is another image than the one that was flashed, its SHA-256 is " + sha256,
+                         expected);
+}
+
 Image load_image(const std::string& path) {
     static Parsed parsed;
     const std::string bytes = read_image_file(path);

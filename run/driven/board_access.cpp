@@ -68,8 +68,19 @@ Names names_of(const std::string& file, bool avr) {
 
 }  // namespace
 
-BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : node_(node), places_({}, {}) {
-    Names names = names_of(file, avr);
+BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr)
+    : node_(node), first_image_(file), avr_(avr), places_({}, {}) {
+    read_names(file);
+}
+
+void BoardAccess::use_image(const std::string& file) {
+    const std::string& wanted = file.empty() ? first_image_ : file;
+    if (wanted != image_) read_names(wanted);
+}
+
+void BoardAccess::read_names(const std::string& file) {
+    Names names = names_of(file, avr_);
+    variables_.clear();
     const auto sizes = image::symbol_sizes(file);
     for (const auto& [name, symbol] : names.symbols) {
         if (symbol.space != image::Space::Data) continue;
@@ -80,6 +91,7 @@ BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : 
         if (name.starts_with("_")) variables_.try_emplace(name.substr(1), variable);
     }
     places_ = debug::Places(names.symbols, std::move(names.lines));
+    image_ = file;
 }
 
 /// From the beginning of the function on, where that is near: instructions have several lengths.

@@ -17,8 +17,18 @@ export class BoardPart {
     this.where = Object.assign(document.createElement('div'), { id: 'where' });
     this.values = Object.assign(document.createElement('table'), { id: 'watches' });
     this.code = Object.assign(document.createElement('pre'), { id: 'code' });
-    this.input.hidden = true;
-    element.append(this.chooser, this.where, this.input, this.values, this.code);
+    this.image = Object.assign(document.createElement('input'), { id: 'flash-file', placeholder: 'path of an image: build/robot.elf', size: 26 });
+    this.image.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') this.flash();
+      event.stopPropagation();
+    });
+    this.burn = Object.assign(document.createElement('button'), { id: 'flash', textContent: 'flash',
+      title: 'write this image into the board; its chip is reset, RAM stays' });
+    this.burn.addEventListener('click', () => this.flash());
+    this.flasher = document.createElement('div');
+    this.flasher.append(this.image, this.burn);
+    this.flasher.hidden = this.input.hidden = true;
+    element.append(this.chooser, this.where, this.input, this.values, this.code, this.flasher);
     element.hidden = boards.length === 0;
   }
   get board() { return this.chooser.value; }
@@ -28,10 +38,14 @@ export class BoardPart {
     this.input.value = '';
     this.look();
   }
+  flash() {
+    const file = this.image.value.trim();
+    if (file) this.ask({ do: 'flash', board: this.board, file });
+  }
   look() {
     this.before = new Map();
     this.drawn = '';
-    this.input.hidden = this.board === '';
+    this.input.hidden = this.flasher.hidden = this.board === '';
     for (const part of [this.where, this.values, this.code]) part.replaceChildren();
     return this.ask({ do: 'look', board: this.board, items: this.items });
   }
