@@ -61,6 +61,11 @@ std::optional<std::uint8_t> led_of(std::string_view signal) {
     return std::nullopt;
 }
 
+/// What nothing on the page is made of: the coils of motors above all, most rows of a trace.
+bool is_no_event(std::string_view signal) {
+    return !tools::is_of_frames(signal) && !led_of(signal);
+}
+
 }  // namespace
 
 EventReader::EventReader(const Recording& recording, std::size_t most, std::uint32_t generation)
@@ -190,6 +195,7 @@ void EventReader::led(const std::string& from, const std::string& signal, double
 void EventReader::read_trace() {
     tools::TraceSelection all;
     all.warns = !recording_.live();
+    all.passes_over = is_no_event;
     const tools::RecordedTrace trace(recording_.folder(), all);
     const double duration = std::max(recording_.duration_s(), 1e-3);
     const auto share = [&](const cosim::TraceRow& row) {
