@@ -91,7 +91,7 @@ std::vector<std::string> result_files(const RunSetup& setup) {
     std::vector<std::string> names{
         "report.json", "report.json.part", "trace.csv",  "trajectory.csv", "trajectory.svg", "sensors.csv",
         "objects.csv", "ir.csv",           "tams.csv",   "faults.csv",     "record.csv",     "trace.sr",
-        "trace.vcd",   "trace.pcapng",     "arena.json", "tracker.csv",    "mission.log"};
+        "trace.vcd",   "trace.pcapng",     "arena.json", "tracker.csv",    "mission.log",    "view.events"};
     for (const PlannedNode& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);

@@ -2,6 +2,7 @@
 // Reads the events of a results folder in a thread of its own: frames of all links by protocol, what became
 // of range-and-bearing frames, IRcom words, faults, resets, lines of logs, changes of LEDs.
 
+#include "view/event_cache.h"
 #include "view/event_table.h"
 #include "view/recording.h"
 
@@ -49,6 +50,8 @@ class EventReader {
     struct Stopped {};
     void run() noexcept;
     void read_all();
+    /// What an earlier viewer kept; false: nothing that is still so.
+    bool load_kept(const std::string& sources);
     void read_logs();
     void read_resets();
     void read_trace();
@@ -71,14 +74,8 @@ class EventReader {
     std::string phase_;
     std::string trouble_;
     std::exception_ptr error_;
-    std::vector<double> led_times_;
-    std::vector<std::uint16_t> led_robots_;
-    std::vector<std::uint8_t> leds_, led_values_;
-    std::size_t leds_left_out_ = 0;
-    std::vector<double> beam_begins_;
-    std::vector<float> beam_durations_;
-    std::vector<std::uint16_t> beam_senders_, beam_receivers_;
-    std::vector<std::uint8_t> beam_fates_;
+    LedEvents leds_;
+    BeamEvents beams_;
     std::thread thread_;
 };
 
