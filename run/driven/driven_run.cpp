@@ -117,8 +117,7 @@ DrivenRun::DrivenRun(const RunSetup& setup, const RunRequest& request, Planner p
     : setup_(setup),
       request_(request),
       planner_(std::move(planner)),
-      interrupted_(interrupted),
-      line_(client_socket_beside(setup.control)),
+      line_(client_socket_beside(setup.control), interrupted),
       world_(setup.control),
       images_(setup.out / cosim::kFlashedFolder),
       origin_(origin_of(setup, request)),
@@ -198,7 +197,7 @@ void DrivenRun::stand(const TakeSnapshot& take) {
         step_.reset();
         line_.send(done);
     } else {
-        if (!line_.await_client(interrupted_)) return;
+        if (!line_.await_client()) return;
         line_.send(greeting());
     }
     serve(take);
@@ -246,7 +245,7 @@ bool DrivenRun::compare(const json& condition) {
 
 void DrivenRun::serve(const TakeSnapshot& take) {
     for (bool go_on = false; !go_on;) {
-        const std::optional<std::string> text = line_.next(interrupted_);
+        const std::optional<std::string> text = line_.next();
         if (!text) {
             if (!line_.connected()) end("its client went away", false);
             return;

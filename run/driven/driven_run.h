@@ -139,7 +139,6 @@ class DrivenRun {
     RunSetup setup_;
     RunRequest request_;
     Planner planner_;
-    const volatile std::sig_atomic_t* interrupted_;
     ClientLine line_;
     WorldCommands world_;
     FrameWatch frames_;
