@@ -164,6 +164,9 @@ class Live(unittest.TestCase):
         self.assertEqual(len(refused), 1)
         self.assertIn("did you mean", refused[0]["answer"])
         for request in ({"do": "back"}, {"do": "back", "to_s": "x"}, {"do": "fault"}, {"do": "until"},
+                        {"do": "flash"}, {"do": "flash", "board": "robot0.pic"}, {"do": "flash", "file": "x"},
+                        {"do": "flash", "board": "x" * 65, "file": "x"},
+                        {"do": "flash", "board": "robot0.pic", "file": "x" * 1001},
                         {"do": "until", "condition": {}}, {"do": "until", "condition": "TMR1 > 2", "ms": 1e9},
                         {"do": "until", "condition": "x" * 1001}, {"do": "type"},
                         {"do": "type", "link": "robot0.uart", "from": "robot0.pic"},
@@ -256,6 +259,43 @@ class Live(unittest.TestCase):
         self.assertGreater(self.report()["faults"][0]["fired"], 0)
         self.assertEqual(self.report()["faults"][1]["fired"], 6)
         self.assertIn('data = "74797065640d"', (self.out / "events.toml").read_text())
+
+    def test_the_page_flashes_an_image(self):
+        if not find_chromium():
+            self.skipTest("no chromium is installed")
+        image = self.folder / "robot.elf"
+        image.write_bytes((SOURCE / "firmware/epuck/epuck_ircom.elf").read_bytes())
+        address = self.start(2)
+        browser = Browser()
+        self.addCleanup(browser.close)
+        browser.open(address)
+        browser.wait("document.body && document.body.dataset.ready")
+        flash = """(() => { const { board } = window.puckloopView; board.image.value = %s;
+            document.getElementById('flash').click(); })()"""
+        browser.value("""(() => { const { board, drive } = window.puckloopView; board.chooser.value = 'robot0.pic';
+            board.look(); board.add('RCON.EXTR'); window.puckloopView.drive({ do: 'step', ms: 500 }); })()""")
+        browser.wait("Number(document.body.dataset.simulated) === 0.5")
+        for file, part in ((SOURCE / "README.md", "no known image format"), ("nowhere.hex", "nowhere.hex"),
+                           (SOURCE / "firmware/rab/rab.hex", "rab.hex")):
+            browser.value(flash % json.dumps(str(file)))
+            browser.wait(f"document.getElementById('detail').textContent.includes({json.dumps(part)})")
+            self.assertEqual(browser.value("document.getElementById('detail').className"), "failed")
+        self.assertEqual(browser.value("document.body.dataset.epoch"), "0")
+        browser.value(flash % json.dumps(str(image)))
+        browser.wait("document.body.dataset.epoch === '1'")
+        image.unlink()
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 100 })")
+        browser.wait("document.querySelector('#watches tr') && document.querySelector('#watches tr').textContent === 'RCON.EXTR1'")
+        browser.wait("document.getElementById('where').textContent.includes('.c:')")  # the ELF's lines; the HEX has none
+        browser.value("window.puckloopView.drive({ do: 'back', to_s: 0.4 })")
+        browser.wait("document.body.dataset.epoch === '2'")
+        browser.wait("document.querySelector('#watches tr').textContent === 'RCON.EXTR0'")
+        self.assertNotIn(".c:", browser.value("document.getElementById('where').textContent"))
+        browser.value("document.getElementById('end-run').click()")
+        browser.wait("document.body.dataset.over === 'true'")
+        self.run.wait(60)
+        self.assertEqual(browser.errors, [])
+        self.assertEqual(self.report()["faults"], [])  # it was taken back
 
     def test_the_page_plays_pauses_steps_and_acts(self):
         if not find_chromium():
