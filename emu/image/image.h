@@ -47,9 +47,6 @@ struct Image {
 /// format.
 Image load_image(const std::string& path);
 
-/// Throws InputError if a file is another one than was meant; an empty `expected` is any.
-void check_hash(const std::string& file, const std::string& sha256, const std::string& expected);
-
 /// The same for bytes already in memory; `file` is the name for messages.
 Image parse_image(std::string_view bytes, const std::string& file);
 

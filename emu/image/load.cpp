@@ -9,6 +9,7 @@
 #include "emu/image/elf_file.h"
 #include "emu/image/image.h"
 #include "emu/image/image_file.h"
+#include "emu/image/image_hash.h"
 #include "emu/image/intel_hex.h"
 
 #include <deque>

@@ -3,6 +3,7 @@
 #include "emu/avr/core/core.h"
 #include "emu/avr/devices/device.h"
 #include "emu/avr/peripherals/eeprom.h"
+#include "emu/image/image_hash.h"
 
 #include <algorithm>
 #include <array>

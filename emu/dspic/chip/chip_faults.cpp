@@ -3,6 +3,7 @@
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/machine/memory_map.h"
 #include "emu/image/device.h"
+#include "emu/image/image_hash.h"
 
 #include <algorithm>
 #include <array>
