@@ -29,7 +29,6 @@ using nlohmann::ordered_json;
 constexpr double kLatest = 9e6;  // s
 // Shares of the work, for the progress.
 constexpr double kFirstReading = 0.4, kSecondReading = 0.9;
-constexpr auto kWorthKeeping = std::chrono::milliseconds(500);
 constexpr std::size_t kMostLogBytes = 64U << 20;  // of one log
 
 /// "[   17.630123 s] text": the time, and where the text begins.
@@ -70,8 +69,12 @@ bool is_no_event(std::string_view signal) {
 
 }  // namespace
 
-EventReader::EventReader(const Recording& recording, std::size_t most, std::uint32_t generation)
-    : recording_(recording), table_(most, generation), thread_([this] { run(); }) {}
+EventReader::EventReader(const Recording& recording, std::size_t most, std::uint32_t generation,
+                         std::chrono::milliseconds worth_keeping)
+    : recording_(recording),
+      worth_keeping_(worth_keeping),
+      table_(most, generation),
+      thread_([this] { run(); }) {}
 
 EventReader::~EventReader() {
     stop_ = true;
@@ -120,7 +123,7 @@ void EventReader::read_all() {
     if (fs::exists(recording_.folder() / "ircom.csv")) read_ircom();
     begin("", 1.0);
     done_ = true;
-    if (!recording_.live() && Clock::now() - begun > kWorthKeeping)
+    if (!recording_.live() && Clock::now() - begun > worth_keeping_)
         save_events(recording_.folder(), sources, table_, leds_, beams_);
 }
 

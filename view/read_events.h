@@ -7,6 +7,7 @@
 #include "view/recording.h"
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -17,9 +18,11 @@ namespace puckloop::view {
 
 class EventReader {
   public:
-    /// Begins to read; `recording` must outlive it. `most` and `generation`: of EventTable.
+    /// Begins to read; `recording` must outlive it. `most` and `generation`: of EventTable. Of a run that is
+    /// over what took longer than `worth_keeping` is kept for the next reader (event_cache.h).
     explicit EventReader(const Recording& recording, std::size_t most = EventTable::kMost,
-                         std::uint32_t generation = 0);
+                         std::uint32_t generation = 0,
+                         std::chrono::milliseconds worth_keeping = std::chrono::milliseconds(500));
     /// Stops reading.
     ~EventReader();
     EventReader(const EventReader&) = delete;
@@ -67,6 +70,7 @@ class EventReader {
     std::size_t station(const std::string& name) const;
 
     const Recording& recording_;
+    std::chrono::milliseconds worth_keeping_;
     EventTable table_;
     std::atomic<bool> stop_ = false, done_ = false;
     std::atomic<double> progress_ = 0.0;

@@ -21,8 +21,8 @@ namespace puckloop::dspic {
 namespace {
 
 /// Configuration words of a part that nobody has programmed: no watchdog by them.
-std::vector<std::uint16_t> erased_configuration(const DeviceInfo& info) {
-    std::vector<std::uint16_t> words(info.config_words, 0xFFFF);
+std::vector<std::uint32_t> erased_configuration(const DeviceInfo& info) {
+    std::vector<std::uint32_t> words(info.config_words, 0xFFFF);
     constexpr std::size_t kFwdt30F = 1;
     constexpr std::size_t kFwdt33F = 5;
     if (!info.family_33f && words.size() > kFwdt30F) words[kFwdt30F] = 0x7FFF;
@@ -100,11 +100,10 @@ void Core::reprogram(std::span<const ProgramWord> words) {
             if (read_program(m, address) != word) write_program(m, address, word);
         }
     };
-    const std::vector<std::uint16_t> configuration = erased_configuration(device);
+    const std::vector<std::uint32_t> configuration = erased_configuration(device);
     write(0, device.flash_end / 2, [](std::size_t) { return kErasedFlash; });
     write(device.eeprom_start, m.eeprom.size(), [](std::size_t) { return kErasedEeprom; });
-    write(device.config_start, m.config.size(),
-          [&](std::size_t i) { return std::uint32_t{configuration[i]}; });
+    write(device.config_start, m.config.size(), [&](std::size_t i) { return configuration[i]; });
     write(device.unit_id_start, m.unit_id.size(), [](std::size_t) { return kErasedFlash; });
 }
 
