@@ -25,7 +25,8 @@ class BoardAccess {
     /// The same with "value", or "data" in hexadecimal.
     void write(const nlohmann::json& request);
     /// Where its program is: "pc", "place" ("main+0x12") and "line" ("main.c:43") where the image has them,
-    /// "asleep", "instructions" around it, "registers" of the core.
+    /// "asleep", "instructions" around it, "registers" of the core, the top of the "stack"; "interrupts"
+    /// since they are counted.
     nlohmann::ordered_json where() const;
     DrivenNode& node() { return node_; }
     /// Names are those of another image from now on; empty: of the one that the board began with.
@@ -44,6 +45,8 @@ class BoardAccess {
     void write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
 
     void read_names(const std::string& file);
+    nlohmann::ordered_json stack() const;
+    nlohmann::ordered_json interrupts() const;
 
     struct Variable {
         std::uint32_t address = 0, bytes = 0;  ///< data address; bytes 0: the image does not say

@@ -144,6 +144,7 @@ std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
     auto node = std::make_unique<DrivenNode>(make_board(description));
     const BoardFields fields = board_fields(description);
     const bool avr = std::holds_alternative<tam::TamSpec>(description.kind);
+    if (counted_.contains(fields.name)) node->count_interrupts(true);
     boards_[fields.name] = std::make_unique<BoardAccess>(*node, fields.firmware, avr);
     return node;
 }
@@ -285,6 +286,8 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
         answered["text"] = value_text(answered);
     } else if (op == "where") {
         answered.update(board(request).where());
+    } else if (op == "interrupts") {
+        count_interrupts(request);
     } else if (op == "faults") {
         answered.update(possible_faults(setup_.scenario));
     } else if (op == "write") {
@@ -312,15 +315,25 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
     } else if (op == "flash") {
         flash(request, take);
     } else if (op != "info") {
-        constexpr std::array<std::string_view, 15> kOps{"info",    "step",   "read", "where", "write",
-                                                        "capture", "frames", "act",  "save",  "faults",
-                                                        "back",    "fault",  "type", "flash", "end"};
+        constexpr std::array<std::string_view, 16> kOps{
+            "info", "step", "read",   "where", "write", "interrupts", "capture", "frames",
+            "act",  "save", "faults", "back",  "fault", "type",       "flash",   "end"};
         throw InputError(
             "", "op", fmt::format("there is no '{}'", op),
             fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
     }
     if (op == "info") answered.update(greeting());
     return answered;
+}
+
+void DrivenRun::count_interrupts(const json& request) {
+    const bool on = request.value("count", true);
+    board(request).node().count_interrupts(on);
+    const std::string name = request.at("node");
+    if (on)
+        counted_.insert(name);
+    else
+        counted_.erase(name);
 }
 
 void DrivenRun::begin_step(const json& request) {

@@ -31,6 +31,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -113,6 +114,7 @@ class DrivenRun {
     /// Answers requests until one lets the run go on.
     void serve(const TakeSnapshot& take);
     nlohmann::ordered_json answer(const nlohmann::json& request, const TakeSnapshot& take, bool& go_on);
+    void count_interrupts(const nlohmann::json& request);
     void begin_step(const nlohmann::json& request);
     void save(const nlohmann::json& request, const TakeSnapshot& take);
     /// Both return only by exceptions: Reverted, or InputError for what cannot be.
@@ -144,6 +146,7 @@ class DrivenRun {
     FrameWatch frames_;
     std::map<std::string, std::unique_ptr<BoardAccess>> boards_;
     KeptImages images_;
+    std::set<std::string> counted_;  ///< boards whose interrupts are
     std::string origin_;
     std::string no_way_back_;  ///< why; empty: there is one
     std::optional<RunWritten> written_;

@@ -345,6 +345,29 @@ class Client(InFolder):
         with self.assertRaisesRegex(puckloop.StartError, "another image than the one that was flashed"):
             puckloop.start(scenario("1 s"), out=self.folder / "e", options=["--events", str(moved / "events.toml")])
 
+    def test_interrupts_are_counted_and_nothing_else_changes(self):
+        traces = []
+        for counted in (False, True):
+            with puckloop.start(scenario("1 s"), out=self.folder / f"{counted}") as run:
+                run.step(to="400 ms")
+                if counted:
+                    self.assertNotIn("interrupts", run._ask("where", {"node": "robot0.pic"}))
+                    run._ask("interrupts", {"node": "robot0.pic"})
+                run.step(to="500 ms")
+                if counted:
+                    taken = {one["name"]: one for one in run._ask("where", {"node": "robot0.pic"})["interrupts"]}
+                    self.assertAlmostEqual(taken["ADC"]["count"], 0.1 / 142.4e-6, delta=15)
+                    self.assertAlmostEqual(taken["ADC"]["per_s"], 10 * taken["ADC"]["count"], delta=1)
+                    run.back("450 ms")  # they are counted from there on
+                    run.step(to="460 ms")
+                    taken = {one["name"]: one for one in run._ask("where", {"node": "robot0.pic"})["interrupts"]}
+                    self.assertLess(taken["ADC"]["count"], 200)
+                    run._ask("interrupts", {"node": "robot0.pic", "count": False})
+                    self.assertNotIn("interrupts", run._ask("where", {"node": "robot0.pic"}))
+                run.step(to="900 ms")
+                traces.append(run.end().report["trace_sha256"])
+        self.assertEqual(traces[0], traces[1])
+
     def test_a_robots_own_image_may_be_built_again_meanwhile(self):
         image = self.folder / "robot.elf"
         first, second = SOURCE / "firmware/epuck/epuck.elf", SOURCE / "firmware/epuck/epuck_ircom.elf"

@@ -272,9 +272,19 @@ class Live(unittest.TestCase):
         browser.wait("document.body && document.body.dataset.ready")
         flash = """(() => { const { board } = window.puckloopView; board.image.value = %s;
             document.getElementById('flash').click(); })()"""
-        browser.value("""(() => { const { board, drive } = window.puckloopView; board.chooser.value = 'robot0.pic';
+        browser.value("""(() => { const { board } = window.puckloopView; board.chooser.value = 'robot0.pic';
             board.look(); board.add('RCON.EXTR'); window.puckloopView.drive({ do: 'step', ms: 500 }); })()""")
         browser.wait("Number(document.body.dataset.simulated) === 0.5")
+        # Interrupts are counted from here on: the A/D scans of the project's firmware come each 142.4 us.
+        browser.value("document.getElementById('count-interrupts').click()")
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 100 })")
+        browser.wait("document.querySelectorAll('#interrupts tr').length > 1")
+        rates = browser.value("""Object.fromEntries([...document.querySelectorAll('#interrupts tr')].map((row) =>
+            [row.cells[0].textContent, parseFloat(row.cells[2].textContent)]))""")
+        self.assertAlmostEqual(rates["ADC"], 1 / 142.4e-6, delta=300)
+        self.assertEqual(browser.value("document.querySelectorAll('#stack div').length"), 16)
+        browser.value("document.getElementById('count-interrupts').click()")
+        browser.wait("document.querySelectorAll('#interrupts tr').length === 0")
         for file, part in ((SOURCE / "README.md", "no known image format"), ("nowhere.hex", "nowhere.hex"),
                            (SOURCE / "firmware/rab/rab.hex", "rab.hex")):
             browser.value(flash % json.dumps(str(file)))
