@@ -120,6 +120,10 @@ void describe(Command& app, ExecArguments& a) {
            "with the chip at its first instruction; without --seconds the run has no end "
            "(docs/debugging.md)")
         ->type_name("PLACE");
+    app.add_flag(
+        "--view", a.view,
+        "open a page in the browser that shows the board and drives it: step, back, registers, UARTs, "
+        "faults, another image (--board; docs/view.md)");
     exec::InstrumentOptions& i = o.instruments;
     app.add_option(
            "--watch", i.watches,
@@ -247,10 +251,6 @@ void describe(Command& app, ExecArguments& a) {
         app.add_flag("--realtime", a.realtime,
                      "pace by the wall clock (default if a pty, TCP or a terminal is at an end)");
     app.add_flag("--no-realtime", a.unpaced, "never pace")->excludes(realtime);
-    app.add_flag(
-        "--view", a.view,
-        "open a page in the browser that shows the board and drives it: step, back, registers, UARTs, "
-        "faults, another image (--board; docs/view.md)");
     declare_log_options(app, a.log);
     app.add_flag("!--no-skip", t.skip_idle, "execute every turn of busy-wait loops");
     app.add_flag("--no-translate", a.interpret,
