@@ -2,6 +2,7 @@
 #include "run/control/control_place.h"
 #include "run/debugging/run_debuggers.h"
 #include "run/driven/driven_run.h"
+#include "run/driven/kept_images.h"
 #include "run/expectations/judge_expectations.h"
 #include "run/expectations/test_report.h"
 #include "run/factory/node_factory.h"
@@ -200,8 +201,7 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
 
     std::error_code ignored;
     if (!planned.scenario.events.any()) std::filesystem::remove(planned.out / "events.toml", ignored);
-    if (flashed_files(planned).empty())
-        std::filesystem::remove_all(planned.out / cosim::kFlashedFolder, ignored);
+    if (flashed_files(planned).empty()) remove_kept_images(planned.out / cosim::kFlashedFolder);
     ControlPlace control(planned.control, planned.out);
     raise_descriptor_limit();
     cosim::RunOptions options;

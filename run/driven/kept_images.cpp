@@ -18,6 +18,10 @@ namespace puckloop::tools {
 
 namespace fs = std::filesystem;
 
+namespace {
+constexpr std::size_t kDigits = 12;  // of the hash, before a copy's name
+}
+
 KeptImages::KeptImages(fs::path folder) : folder_(std::move(folder)) {}
 
 void KeptImages::remember(const std::string& file) {
@@ -31,10 +35,21 @@ std::string KeptImages::as_it_was(const std::string& file) const {
     return written(file, kept->second);
 }
 
+void remove_kept_images(const fs::path& folder) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+        const std::string name = entry.path().filename().string();
+        const bool copy = name.size() > kDigits && name[kDigits] == '-' &&
+                          name.find_first_not_of("0123456789abcdef") == kDigits;
+        if (copy && entry.is_regular_file(none)) fs::remove(entry.path(), none);
+    }
+    fs::remove(folder, none);  // stays where there is something else
+}
+
 /// The name begins with the hash, so that images of one name do not meet; what a fault's words cannot hold is
 /// left out of it.
 std::string KeptImages::written(const std::string& file, const std::string& bytes) const {
-    constexpr std::size_t kDigits = 12, kLongestName = 100;
+    constexpr std::size_t kLongestName = 100;
     std::string name;
     for (const char c : fs::path(file).filename().string())
         if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||

@@ -39,4 +39,7 @@ class KeptImages {
     std::set<std::string> remembered_;
 };
 
+/// The copies of an earlier run, and the folder if nothing else is in it.
+void remove_kept_images(const std::filesystem::path& folder);
+
 }  // namespace puckloop::tools
