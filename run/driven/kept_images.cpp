@@ -19,7 +19,7 @@ namespace puckloop::tools {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::size_t kDigits = 12;  // of the hash, before a copy's name
+constexpr std::size_t kHashDigits = 12;  // of the hash, before a copy's name
 }
 
 KeptImages::KeptImages(fs::path folder) : folder_(std::move(folder)) {}
@@ -39,8 +39,8 @@ void remove_kept_images(const fs::path& folder) {
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(folder, none)) {
         const std::string name = entry.path().filename().string();
-        const bool copy = name.size() > kDigits && name[kDigits] == '-' &&
-                          name.find_first_not_of("0123456789abcdef") == kDigits;
+        const bool copy = name.size() > kHashDigits && name[kHashDigits] == '-' &&
+                          name.find_first_not_of("0123456789abcdef") == kHashDigits;
         if (copy && entry.is_regular_file(none)) fs::remove(entry.path(), none);
     }
     fs::remove(folder, none);  // stays where there is something else
@@ -57,7 +57,7 @@ std::string KeptImages::written(const std::string& file, const std::string& byte
             name += c;
     if (name.size() > kLongestName) name.erase(0, name.size() - kLongestName);
     make_folder(folder_);
-    const fs::path copy = fs::absolute(folder_ / (sha256_text(bytes).substr(0, kDigits) + "-" + name));
+    const fs::path copy = fs::absolute(folder_ / (sha256_text(bytes).substr(0, kHashDigits) + "-" + name));
     if (read_whole_file(copy) != bytes) write_file(copy, bytes);
     return copy.string();
 }
