@@ -85,7 +85,7 @@ def twenty(folder):
 
 
 class Onlooker(threading.Thread):
-    """Asks as a page does that shows 30 frames a second, until it is told to end."""
+    """Asks as a page does that shows 30 frames a second, until it is ended."""
 
     def __init__(self, address):
         super().__init__()
