@@ -22,7 +22,6 @@ void DrivenNode::state(StateWriter& archive) const {
 void DrivenNode::state(StateReader& archive) {
     board_->state(archive);
     reached_ = chip_.granted();
-    if (counts_) count_interrupts(true);
 }
 
 /// Of the board's own advance, where what it sends has somewhere to go.

@@ -218,6 +218,8 @@ bool DrivenRun::returned() {
             if (deed.time > now_) next_ = std::min(*next_, deed.time);
         return false;
     }
+    for (const std::string& name : counted_)  // from here on, not from the snapshot
+        boards_.at(name)->node().count_interrupts(true);
     line_.send(reply(return_->id));
     return_.reset();
     step_.reset();
