@@ -2,6 +2,7 @@
 #include "run/control/control_place.h"
 #include "run/debugging/run_debuggers.h"
 #include "run/driven/driven_run.h"
+#include "run/driven/kept_images.h"
 #include "run/expectations/judge_expectations.h"
 #include "run/expectations/test_report.h"
 #include "run/factory/node_factory.h"
@@ -15,6 +16,7 @@
 #include "run/snapshots/snapshot_plan.h"
 
 #include "base/error.h"
+#include "cosim/faults/flash.h"
 #include "cosim/resume/run_snapshot.h"
 #include "cosim/trace/trace_csv.h"
 #include "physics/render/arena_file.h"
@@ -28,6 +30,7 @@
 #include <cstring>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -95,7 +98,7 @@ std::vector<std::string> result_files(const RunSetup& setup) {
                                    "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
                                    "tams.csv",       "faults.csv",       "record.csv",  "trace.sr",
                                    "trace.vcd",      "trace.pcapng",     "arena.json",  "tracker.csv",
-                                   "mission.log",    "pheromones.csv"};
+                                   "mission.log",    "pheromones.csv",   "view.events"};
     for (const PlannedNode& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);
@@ -178,7 +181,7 @@ std::vector<std::string> work_folders(const RunSetup& setup) {
 }  // namespace
 
 std::vector<std::string> kept_results(const RunSetup& setup) {
-    std::vector<std::string> names{"control.json", "events.toml"};
+    std::vector<std::string> names{"control.json", "events.toml", std::string(cosim::kFlashedFolder)};
     for (const std::string& folder : work_folders(setup))
         names.push_back(std::filesystem::path(folder).begin()->string());
     return names;
@@ -197,13 +200,14 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
                             const cosim::InterruptGuard* interrupt, bool driven_by_client) {
     check_files(planned);
-    const std::vector<UsedFile> files = used_files(planned);
+    std::vector<UsedFile> files = used_files(planned);
     const ResultsFolder folder(planned.out, result_files(planned), kept_results(planned));
     make_work_folders(planned);
     ReservedFile report(planned.out / "report.json", kReportBytes);
 
     std::error_code ignored;
     if (!planned.scenario.events.any()) std::filesystem::remove(planned.out / "events.toml", ignored);
+    if (flashed_files(planned).empty()) remove_kept_images(planned.out / cosim::kFlashedFolder);
     ControlPlace control(planned.control, planned.out);
     raise_descriptor_limit();
     cosim::RunOptions options;
@@ -281,6 +285,8 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
         outcome = conductor->run();
     } while (outcome.reason == cosim::EndReason::Reverted);
     const RunSetup& setup = driven ? driven->setup() : planned;  // a client may have added faults
+    for (UsedFile& file : flashed_files(setup))
+        files.push_back(std::move(file));
     if (live) end_live(*live, outcome);
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;

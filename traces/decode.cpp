@@ -33,7 +33,9 @@ double seconds(cosim::Time time) {
 
 void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const DecodeWatch& watch) {
     std::map<std::string, Ends> ends;
-    trace.for_each_checked([&](const cosim::TraceRow& row) {
+    TraceSelection frames = trace.selection();
+    if (frames.passes_over) frames.passes_over = [](std::string_view) { return true; };
+    RecordedTrace(trace.file(), frames).for_each_checked([&](const cosim::TraceRow& row) {
         if (watch.first) watch.first(row);
         const auto* frame = std::get_if<cosim::UartFrame>(&row.payload);
         if (frame == nullptr) return;
@@ -80,6 +82,10 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const Decod
     ircom.end();
     while (const FaultMark* mark = faults.next(cosim::kNever))
         decode_mark(*mark, take);
+}
+
+bool is_of_frames(std::string_view signal) {
+    return RabDecoder::is_of_frames(signal) || IrcomDecoder::is_of_frames(signal);
 }
 
 std::string to_text(const DecodedFrame& frame) {

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::tools {
@@ -35,6 +36,9 @@ struct DecodeWatch {
 
 /// Hands over frames in the order in which they were complete.
 void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const DecodeWatch& watch = {});
+
+/// Frames may be made of this signal.
+bool is_of_frames(std::string_view signal);
 
 /// One line each, without the line end.
 std::string to_text(const DecodedFrame& frame);

@@ -34,11 +34,10 @@ void RabDecoder::edge(Emitter& emitter, Time time, bool level) {
 }
 
 bool RabDecoder::add(const cosim::TraceRow& row, const cosim::Signal& signal) {
-    constexpr std::string_view kName = "emitter";
-    if (!row.signal.starts_with(kName) || !row.from.ends_with(".rab")) return false;
+    if (!row.signal.starts_with(kEmitter) || !row.from.ends_with(".rab")) return false;
     int number = 0;
     const char* end = row.signal.data() + row.signal.size();
-    if (std::from_chars(row.signal.data() + kName.size(), end, number).ptr != end || number < 1 ||
+    if (std::from_chars(row.signal.data() + kEmitter.size(), end, number).ptr != end || number < 1 ||
         number > kEmitters)
         return false;
     Board& board = boards_[{row.link, row.from}];

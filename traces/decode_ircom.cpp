@@ -14,8 +14,8 @@ constexpr int kFewestEdges = 20;
 }  // namespace
 
 bool IrcomDecoder::add(const cosim::TraceRow& row, const cosim::Signal& signal) {
-    const bool is_board = row.from.ends_with(".pic") && row.signal.starts_with("pulse");
-    const bool is_tam = row.from.ends_with(".avr") && row.signal == "proximity_emit";
+    const bool is_board = row.from.ends_with(".pic") && row.signal.starts_with(kPulse);
+    const bool is_tam = row.from.ends_with(".avr") && row.signal == kBarrier;
     if (!row.link.ends_with(".ircom") || !(is_board || is_tam)) return false;
     for (auto& [name, sender] : senders_)
         if (row.time - sender.last >= protocols::IrcomReader::kRest)

@@ -160,11 +160,14 @@ class I2cDecoder {
 class RabDecoder {
   public:
     explicit RabDecoder(TakeFrame take) : take_(std::move(take)) {}
+    /// The signal may be one of its light, by its name alone.
+    static bool is_of_frames(std::string_view signal) { return signal.starts_with(kEmitter); }
     /// True if the row is a range-and-bearing emitter's.
     bool add(const cosim::TraceRow& row, const cosim::Signal& signal);
     void end();
 
   private:
+    static constexpr std::string_view kEmitter = "emitter";  // and its number
     static constexpr int kEmitters = 12;
     struct Emitter {
         cosim::Time begin = 0, edge = 0;
@@ -184,11 +187,16 @@ class RabDecoder {
 class IrcomDecoder {
   public:
     explicit IrcomDecoder(TakeFrame take) : take_(std::move(take)) {}
+    /// The signal may be one of its light, by its name alone.
+    static bool is_of_frames(std::string_view signal) {
+        return signal.starts_with(kPulse) || signal == kBarrier;
+    }
     /// True if the row is a sender's light.
     bool add(const cosim::TraceRow& row, const cosim::Signal& signal);
     void end();
 
   private:
+    static constexpr std::string_view kPulse = "pulse", kBarrier = "proximity_emit";
     struct Sender {
         std::map<std::string, bool> lit;  ///< by emitter; each lights the whole
         cosim::Time last = 0;

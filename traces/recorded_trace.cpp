@@ -21,6 +21,7 @@ namespace {
 
 // A row of a radio frame has some 400.
 constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kPiece = 64 * kLongestLine;  // read at once
 
 void check_known(const char* option, const std::vector<std::string>& asked,
                  const std::set<std::string>& known) {
@@ -63,33 +64,64 @@ RecordedTrace::RecordedTrace(const std::filesystem::path& place, TraceSelection 
 }
 
 RecordedTrace::Cursor::Cursor(const RecordedTrace& trace)
-    : trace_(trace), in_(trace.file_, std::ios::binary), buffer_(kLongestLine) {
+    : trace_(trace), in_(trace.file_, std::ios::binary), buffer_(kPiece) {
     const std::string file = trace.file_.string();
     if (!in_) throw InputError(file, "", std::strerror(errno), "a trace.csv that a run recorded");
     if (!read_line() || line_ != cosim::kTraceColumns)
         throw InputError(file, "line 1", "no recorded trace", std::string(cosim::kTraceColumns));
 }
 
+void RecordedTrace::Cursor::refuse_long() const {
+    throw InputError(trace_.file_.string(), fmt::format("line {}", number_),
+                     fmt::format("longer than {} characters", kLongestLine - 1),
+                     number_ == 1 ? std::string(cosim::kTraceColumns) : "a row of a recorded trace");
+}
+
 bool RecordedTrace::Cursor::read_line() {
-    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    const auto count = static_cast<std::size_t>(in_.gcount());
     ++number_;
-    if (in_.fail() && count + 1 == buffer_.size())
-        throw InputError(trace_.file_.string(), fmt::format("line {}", number_),
-                         fmt::format("longer than {} characters", count),
-                         number_ == 1 ? std::string(cosim::kTraceColumns) : "a row of a recorded trace");
-    if (!in_) return false;
-    line_ = std::string_view(buffer_.data(), in_.eof() ? count : count - 1);
-    return true;
+    for (std::size_t looked = begin_;;) {
+        const char* const from = buffer_.data() + begin_;
+        const void* const found = std::memchr(buffer_.data() + looked, '\n', end_ - looked);
+        line_ended_ = found != nullptr;
+        const std::size_t size =
+            line_ended_ ? static_cast<std::size_t>(static_cast<const char*>(found) - from) : end_ - begin_;
+        if (size >= kLongestLine) refuse_long();
+        if (line_ended_ || !in_) {
+            line_ = {from, size};
+            begin_ = std::min(end_, begin_ + size + 1);
+            return line_ended_ || size > 0;
+        }
+        std::memmove(buffer_.data(), from, size);
+        in_.read(buffer_.data() + size, static_cast<std::streamsize>(buffer_.size() - size));
+        begin_ = 0;
+        looked = size;
+        end_ = size + static_cast<std::size_t>(in_.gcount());
+    }
+}
+
+/// By the columns up to the signal's name.
+bool RecordedTrace::Cursor::is_passed_over() const {
+    constexpr std::string_view kSignal = "signal";
+    std::string_view rest = line_;
+    for (int column = 0; column < 5; ++column) {
+        const std::size_t comma = rest.find(',');
+        if (comma == std::string_view::npos) return false;
+        if (column == 3 && rest.substr(0, comma) != kSignal) return false;
+        rest.remove_prefix(comma + 1);
+    }
+    return trace_.selection_.passes_over(rest.substr(0, rest.find(',')));
 }
 
 std::optional<cosim::TraceRow> RecordedTrace::Cursor::next_of_all() {
-    if (!whole_ || !read_line()) return std::nullopt;
-    if (in_.eof()) {
-        whole_ = false;
-        return std::nullopt;
+    while (whole_ && read_line()) {
+        if (!line_ended_) {
+            whole_ = false;
+            break;
+        }
+        if (trace_.selection_.passes_over && is_passed_over()) continue;
+        return cosim::parse_trace_row(line_, trace_.file_.string(), number_);
     }
-    return cosim::parse_trace_row(line_, trace_.file_.string(), number_);
+    return std::nullopt;
 }
 
 std::optional<cosim::TraceRow> RecordedTrace::Cursor::next() {
@@ -101,9 +133,12 @@ std::optional<cosim::TraceRow> RecordedTrace::Cursor::next() {
 void RecordedTrace::for_each_checked(const std::function<void(const cosim::TraceRow&)>& take) const {
     std::set<std::string> links, nodes;
     Cursor cursor(*this);
+    const bool named = !selection_.links.empty() || !selection_.nodes.empty();
     while (const auto row = cursor.next_of_all()) {
-        links.insert(row->link);
-        nodes.insert(row->from);
+        if (named) {
+            links.insert(row->link);
+            nodes.insert(row->from);
+        }
         if (selection_.wanted(*row)) take(*row);
     }
     check_known("--link", selection_.links, links);

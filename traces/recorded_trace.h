@@ -20,6 +20,9 @@ struct TraceSelection {
     double until_s = 9e6;
     /// `nodes` must occur, but whatever the others sent is wanted too.
     bool nodes_only_named = false;
+    /// Signals by name whose rows are left out unread, which costs a fraction of reading them; what is wrong
+    /// in such a row is not found. Empty: none.
+    std::function<bool(std::string_view)> passes_over{};
     /// An incomplete last line is worth a warning: not while the file grows.
     bool warns = true;
 
@@ -52,11 +55,15 @@ class RecordedTrace {
       private:
         /// False at the end of the file. Throws InputError for a line that nobody writes.
         bool read_line();
+        bool is_passed_over() const;
+        [[noreturn]] void refuse_long() const;
 
         const RecordedTrace& trace_;
         std::ifstream in_;
         std::vector<char> buffer_;
+        std::size_t begin_ = 0, end_ = 0;  ///< of what is read and not taken yet
         std::string_view line_;
+        bool line_ended_ = true;
         std::size_t number_ = 0;
         bool whole_ = true;
     };

@@ -109,6 +109,52 @@ void EventTable::thin() {
     ++generation_;
 }
 
+EventTable::Kept EventTable::keep() const {
+    const std::lock_guard lock(mutex_);
+    Kept kept{begins_, durations_, tracks_, flags_, text_size_, names_, left_out_};
+    for (const std::uint16_t size : text_size_)
+        kept.text_bytes += size;
+    return kept;
+}
+
+void EventTable::each_text(const std::function<void(std::string_view)>& take) const {
+    const std::lock_guard lock(mutex_);
+    std::string piece;
+    std::uint64_t piece_at = 0;
+    for (std::size_t i = 0; i < text_at_.size(); ++i)
+        take(text_of(i, piece, piece_at));
+}
+
+bool EventTable::take(Kept kept, std::FILE* texts) {
+    const auto of_no_track = [&](std::uint16_t track) { return track >= kept.names.size(); };
+    if (std::any_of(kept.tracks.begin(), kept.tracks.end(), of_no_track)) return false;
+    std::vector<std::uint64_t> places;
+    places.reserve(kept.text_sizes.size());
+    std::uint64_t at = kept.texts_at;
+    for (const std::uint16_t size : kept.text_sizes) {
+        places.push_back(at);
+        at += size;
+    }
+    if (at != kept.texts_at + kept.text_bytes) return false;
+    const std::lock_guard lock(mutex_);
+    begins_ = std::move(kept.begins);
+    durations_ = std::move(kept.durations);
+    tracks_ = std::move(kept.tracks);
+    flags_ = std::move(kept.flags);
+    text_size_ = std::move(kept.text_sizes);
+    text_at_ = std::move(places);
+    names_ = std::move(kept.names);
+    by_name_.clear();
+    for (std::size_t i = 0; i < names_.size(); ++i)
+        by_name_[names_[i].name] = static_cast<std::uint16_t>(i);
+    seen_.assign(names_.size(), 0);
+    left_out_ = static_cast<std::size_t>(kept.left_out);
+    texts_.reset(texts);
+    written_ = at;
+    pending_.clear();
+    return true;
+}
+
 EventTable::Status EventTable::status() const {
     const std::lock_guard lock(mutex_);
     return {generation_, begins_.size(), left_out_, names_};
@@ -164,18 +210,20 @@ std::vector<std::uint32_t> EventTable::find(std::string_view part, std::size_t m
     // Texts follow one another in the file in the order of the events: it is read in large pieces.
     std::string piece;
     std::uint64_t piece_at = 0;
-    for (std::size_t i = 0; i < text_at_.size() && found.size() < most; ++i) {
-        const std::uint64_t at = text_at_[i];
-        const std::size_t size = text_size_[i];
-        if (at < piece_at || at + size > piece_at + piece.size()) {
-            piece_at = at;
-            piece = read(at, static_cast<std::size_t>(
-                                 std::min<std::uint64_t>(4 * kBuffer, written_ + pending_.size() - at)));
-        }
-        if (has(std::string_view(piece).substr(static_cast<std::size_t>(at - piece_at), size), wanted))
-            found.push_back(static_cast<std::uint32_t>(i));
-    }
+    for (std::size_t i = 0; i < text_at_.size() && found.size() < most; ++i)
+        if (has(text_of(i, piece, piece_at), wanted)) found.push_back(static_cast<std::uint32_t>(i));
     return found;
+}
+
+std::string_view EventTable::text_of(std::size_t number, std::string& piece, std::uint64_t& piece_at) const {
+    const std::uint64_t at = text_at_[number];
+    const std::size_t size = text_size_[number];
+    if (at < piece_at || at + size > piece_at + piece.size()) {
+        piece_at = at;
+        piece = read(at, static_cast<std::size_t>(
+                             std::min<std::uint64_t>(4 * kBuffer, written_ + pending_.size() - at)));
+    }
+    return std::string_view(piece).substr(static_cast<std::size_t>(at - piece_at), size);
 }
 
 }  // namespace puckloop::view

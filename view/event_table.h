@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -57,12 +58,35 @@ class EventTable {
     /// Numbers of the events whose text has `part`, whatever the case of its letters; at most `most`.
     std::vector<std::uint32_t> find(std::string_view part, std::size_t most) const;
 
+    /// Everything but the texts, to be written to a file and to come from it (event_cache.h).
+    struct Kept {
+        std::vector<double> begins;
+        std::vector<float> durations;
+        std::vector<std::uint16_t> tracks;
+        std::vector<std::uint8_t> flags;
+        std::vector<std::uint16_t> text_sizes;
+        std::vector<Track> names;
+        std::uint64_t left_out = 0;
+        std::uint64_t text_bytes = 0;  ///< of all texts, which follow one another
+        std::uint64_t texts_at = 0;    ///< where they begin in their file
+        static constexpr std::size_t kBytesOfEvent =
+            sizeof(double) + sizeof(float) + 2 * sizeof(std::uint16_t) + sizeof(std::uint8_t);
+    };
+    Kept keep() const;
+    /// The texts in the order of the events. Throws RunError.
+    void each_text(const std::function<void(std::string_view)>& take) const;
+    /// In place of everything: events whose texts are in `texts`, which is this table's then. False: they do
+    /// not fit each other, and nothing has changed.
+    bool take(Kept kept, std::FILE* texts);
+
     static constexpr std::size_t kMost = 2'000'000;
     static constexpr std::size_t kLongestText = 4096;
 
   private:
     void thin();
     std::string read(std::uint64_t at, std::size_t count) const;
+    /// A text, out of a large piece of the file that is read where it is needed; for rising numbers.
+    std::string_view text_of(std::size_t number, std::string& piece, std::uint64_t& piece_at) const;
 
     struct Closer {
         void operator()(std::FILE* file) const { std::fclose(file); }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -61,10 +62,19 @@ std::optional<std::uint8_t> led_of(std::string_view signal) {
     return std::nullopt;
 }
 
+/// What nothing on the page is made of: the coils of motors above all, most rows of a trace.
+bool is_no_event(std::string_view signal) {
+    return !tools::is_of_frames(signal) && !led_of(signal);
+}
+
 }  // namespace
 
-EventReader::EventReader(const Recording& recording, std::size_t most, std::uint32_t generation)
-    : recording_(recording), table_(most, generation), thread_([this] { run(); }) {}
+EventReader::EventReader(const Recording& recording, std::size_t most, std::uint32_t generation,
+                         std::chrono::milliseconds worth_keeping)
+    : recording_(recording),
+      worth_keeping_(worth_keeping),
+      table_(most, generation),
+      thread_([this] { run(); }) {}
 
 EventReader::~EventReader() {
     stop_ = true;
@@ -97,6 +107,10 @@ void EventReader::read_all() {
         phase_ = phase;
         progress_ = progress;
     };
+    using Clock = std::chrono::steady_clock;
+    const auto begun = Clock::now();
+    const std::string sources = recording_.live() ? std::string() : event_sources(recording_.folder());
+    if (!recording_.live() && load_kept(sources)) return begin("", 1.0);
     begin("logs", 0.0);
     read_logs();
     read_resets();
@@ -108,6 +122,19 @@ void EventReader::read_all() {
     begin("ircom.csv", 1.0);
     if (fs::exists(recording_.folder() / "ircom.csv")) read_ircom();
     begin("", 1.0);
+    done_ = true;
+    if (!recording_.live() && Clock::now() - begun > worth_keeping_)
+        save_events(recording_.folder(), sources, table_, leds_, beams_);
+}
+
+bool EventReader::load_kept(const std::string& sources) {
+    LedEvents leds;
+    BeamEvents beams;
+    if (!load_events(recording_.folder(), sources, table_, leds, beams)) return false;
+    const std::lock_guard lock(mutex_);
+    leds_ = std::move(leds);
+    beams_ = std::move(beams);
+    return true;
 }
 
 std::string EventReader::robot_of(const std::string& name) const {
@@ -177,19 +204,20 @@ void EventReader::led(const std::string& from, const std::string& signal, double
     const std::size_t robot = station(robot_of(from));
     if (robot >= recording_.robots()) return;
     const std::lock_guard lock(mutex_);
-    if (leds_.size() >= kMostLeds) {
-        ++leds_left_out_;
+    if (leds_.leds.size() >= kMostLeds) {
+        ++leds_.left_out;
         return;
     }
-    led_times_.push_back(time);
-    led_robots_.push_back(static_cast<std::uint16_t>(robot));
-    leds_.push_back(*led);
-    led_values_.push_back(value != 0.0 ? 1 : 0);
+    leds_.times.push_back(time);
+    leds_.robots.push_back(static_cast<std::uint16_t>(robot));
+    leds_.leds.push_back(*led);
+    leds_.values.push_back(value != 0.0 ? 1 : 0);
 }
 
 void EventReader::read_trace() {
     tools::TraceSelection all;
     all.warns = !recording_.live();
+    all.passes_over = is_no_event;
     const tools::RecordedTrace trace(recording_.folder(), all);
     const double duration = std::max(recording_.duration_s(), 1e-3);
     const auto share = [&](const cosim::TraceRow& row) {
@@ -255,11 +283,11 @@ void EventReader::read_rab() {
 void EventReader::add_beam(double begin, double duration, std::size_t sender, std::size_t receiver,
                            std::uint8_t fate) {
     const std::lock_guard lock(mutex_);
-    beam_begins_.push_back(begin);
-    beam_durations_.push_back(static_cast<float>(duration));
-    beam_senders_.push_back(static_cast<std::uint16_t>(sender));
-    beam_receivers_.push_back(static_cast<std::uint16_t>(receiver));
-    beam_fates_.push_back(fate);
+    beams_.begins.push_back(begin);
+    beams_.durations.push_back(static_cast<float>(duration));
+    beams_.senders.push_back(static_cast<std::uint16_t>(sender));
+    beams_.receivers.push_back(static_cast<std::uint16_t>(receiver));
+    beams_.fates.push_back(fate);
 }
 
 void EventReader::read_ircom() {
@@ -299,9 +327,9 @@ std::string EventReader::status() const {
     const ordered_json json{{"generation", now.generation},
                             {"events", now.events},
                             {"left_out", now.left_out},
-                            {"leds", leds_.size()},
-                            {"leds_left_out", leds_left_out_},
-                            {"beams", beam_fates_.size()},
+                            {"leds", leds_.leds.size()},
+                            {"leds_left_out", leds_.left_out},
+                            {"beams", beams_.fates.size()},
                             {"done", done},
                             {"progress", progress_.load()},
                             {"reading", phase_},
@@ -312,29 +340,29 @@ std::string EventReader::status() const {
 
 std::string EventReader::leds(std::size_t first, std::size_t most) const {
     const std::lock_guard lock(mutex_);
-    first = std::min(first, leds_.size());
-    const std::size_t count = std::min(most, leds_.size() - first);
+    first = std::min(first, leds_.leds.size());
+    const std::size_t count = std::min(most, leds_.leds.size() - first);
     std::string out;
-    for (const std::size_t number : {first, count, leds_.size()})
+    for (const std::size_t number : {first, count, leds_.leds.size()})
         append_number(out, static_cast<std::uint32_t>(number));
     append_number(out, std::uint32_t{0});  // so that what follows begins at a multiple of eight
-    append_numbers(out, std::span(led_times_).subspan(first, count));
-    append_numbers(out, std::span(led_robots_).subspan(first, count));
-    append_numbers(out, std::span(leds_).subspan(first, count));
-    append_numbers(out, std::span(led_values_).subspan(first, count));
+    append_numbers(out, std::span(leds_.times).subspan(first, count));
+    append_numbers(out, std::span(leds_.robots).subspan(first, count));
+    append_numbers(out, std::span(leds_.leds).subspan(first, count));
+    append_numbers(out, std::span(leds_.values).subspan(first, count));
     return out;
 }
 
 std::string EventReader::beams() const {
     const std::lock_guard lock(mutex_);
     std::string out;
-    append_number(out, static_cast<std::uint32_t>(beam_fates_.size()));
+    append_number(out, static_cast<std::uint32_t>(beams_.fates.size()));
     append_number(out, std::uint32_t{0});
-    append_numbers(out, std::span(beam_begins_));
-    append_numbers(out, std::span(beam_durations_));
-    append_numbers(out, std::span(beam_senders_));
-    append_numbers(out, std::span(beam_receivers_));
-    append_numbers(out, std::span(beam_fates_));
+    append_numbers(out, std::span(beams_.begins));
+    append_numbers(out, std::span(beams_.durations));
+    append_numbers(out, std::span(beams_.senders));
+    append_numbers(out, std::span(beams_.receivers));
+    append_numbers(out, std::span(beams_.fates));
     return out;
 }
 

@@ -2,10 +2,12 @@
 // Reads the events of a results folder in a thread of its own: frames of all links by protocol, what became
 // of range-and-bearing frames, IRcom words, faults, resets, lines of logs, changes of LEDs.
 
+#include "view/event_cache.h"
 #include "view/event_table.h"
 #include "view/recording.h"
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -16,9 +18,11 @@ namespace puckloop::view {
 
 class EventReader {
   public:
-    /// Begins to read; `recording` must outlive it. `most` and `generation`: of EventTable.
+    /// Begins to read; `recording` must outlive it. `most` and `generation`: of EventTable. Of a run that is
+    /// over what took longer than `worth_keeping` is kept for the next reader (event_cache.h).
     explicit EventReader(const Recording& recording, std::size_t most = EventTable::kMost,
-                         std::uint32_t generation = 0);
+                         std::uint32_t generation = 0,
+                         std::chrono::milliseconds worth_keeping = std::chrono::milliseconds(500));
     /// Stops reading.
     ~EventReader();
     EventReader(const EventReader&) = delete;
@@ -49,6 +53,8 @@ class EventReader {
     struct Stopped {};
     void run() noexcept;
     void read_all();
+    /// What an earlier viewer kept; false: nothing that is still so.
+    bool load_kept(const std::string& sources);
     void read_logs();
     void read_resets();
     void read_trace();
@@ -64,6 +70,7 @@ class EventReader {
     std::size_t station(const std::string& name) const;
 
     const Recording& recording_;
+    std::chrono::milliseconds worth_keeping_;
     EventTable table_;
     std::atomic<bool> stop_ = false, done_ = false;
     std::atomic<double> progress_ = 0.0;
@@ -71,14 +78,8 @@ class EventReader {
     std::string phase_;
     std::string trouble_;
     std::exception_ptr error_;
-    std::vector<double> led_times_;
-    std::vector<std::uint16_t> led_robots_;
-    std::vector<std::uint8_t> leds_, led_values_;
-    std::size_t leds_left_out_ = 0;
-    std::vector<double> beam_begins_;
-    std::vector<float> beam_durations_;
-    std::vector<std::uint16_t> beam_senders_, beam_receivers_;
-    std::vector<std::uint8_t> beam_fates_;
+    LedEvents leds_;
+    BeamEvents beams_;
     std::thread thread_;
 };
 

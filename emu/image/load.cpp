@@ -9,6 +9,7 @@
 #include "emu/image/elf_file.h"
 #include "emu/image/image.h"
 #include "emu/image/image_file.h"
+#include "emu/image/image_hash.h"
 #include "emu/image/intel_hex.h"
 
 #include <deque>
@@ -91,6 +92,12 @@ Image parse_image(std::string_view bytes, const std::string& file) {
     }
     if (image.program.empty()) throw InputError(file, "", "holds no program words", "firmware");
     return image;
+}
+
+void check_hash(const std::string& file, const std::string& sha256, const std::string& expected) {
+    if (!expected.empty() && sha256 != expected)
+        throw InputError(file, "", "is another image than the one that was flashed, its SHA-256 is " + sha256,
+                         expected);
 }
 
 Image load_image(const std::string& path) {

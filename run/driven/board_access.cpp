@@ -68,8 +68,19 @@ Names names_of(const std::string& file, bool avr) {
 
 }  // namespace
 
-BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : node_(node), places_({}, {}) {
-    Names names = names_of(file, avr);
+BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr)
+    : node_(node), first_image_(file), avr_(avr), places_({}, {}) {
+    read_names(file);
+}
+
+void BoardAccess::use_image(const std::string& file) {
+    const std::string& wanted = file.empty() ? first_image_ : file;
+    if (wanted != image_) read_names(wanted);
+}
+
+void BoardAccess::read_names(const std::string& file) {
+    Names names = names_of(file, avr_);
+    variables_.clear();
     const auto sizes = image::symbol_sizes(file);
     for (const auto& [name, symbol] : names.symbols) {
         if (symbol.space != image::Space::Data) continue;
@@ -80,6 +91,7 @@ BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr) : 
         if (name.starts_with("_")) variables_.try_emplace(name.substr(1), variable);
     }
     places_ = debug::Places(names.symbols, std::move(names.lines));
+    image_ = file;
 }
 
 /// From the beginning of the function on, where that is near: instructions have several lengths.
@@ -109,12 +121,64 @@ ordered_json BoardAccess::where() const {
     for (std::size_t i = 0; i < values.size(); ++i)
         registers.push_back(
             {{"name", chip.registers()[i].name}, {"bits", chip.registers()[i].bits}, {"value", values[i]}});
-    return {{"pc", pc},
-            {"place", places_.place(pc)},
-            {"line", places_.lines().at(pc)},
-            {"asleep", chip.asleep()},
-            {"instructions", std::move(instructions)},
-            {"registers", std::move(registers)}};
+    ordered_json reply{{"pc", pc},
+                       {"place", places_.place(pc)},
+                       {"line", places_.lines().at(pc)},
+                       {"asleep", chip.asleep()},
+                       {"instructions", std::move(instructions)},
+                       {"registers", std::move(registers)},
+                       {"stack", stack()}};
+    if (node_.interrupt_counts() != nullptr) reply["interrupts"] = interrupts();
+    return reply;
+}
+
+/// What was pushed last comes first. A word that may lead back into the program has its place.
+ordered_json BoardAccess::stack() const {
+    constexpr int kShown = 16;
+    constexpr std::uint32_t kWord = 2, kHighOfPc = 0x7F;
+    const debug::DebugChip& chip = node_.chip();
+    const bool up = chip.stack_grows_up();  // a dsPIC, whose words these are; else an AVR's bytes
+    ordered_json words = ordered_json::array();
+    const auto read = [&](std::uint32_t at, std::uint32_t& word) {
+        std::uint8_t bytes[kWord] = {};
+        if (at < chip.ram_start() || at + kWord > chip.ram_end() ||
+            !chip.read_memory(debug::DebugChip::address_of_data(static_cast<std::uint16_t>(at)), bytes))
+            return false;
+        word = static_cast<std::uint32_t>(up ? bytes[0] | bytes[1] << 8 : bytes[0] << 8 | bytes[1]);
+        return true;
+    };
+    const std::uint32_t top = chip.stack_pointer();
+    for (int i = 0; i < kShown; ++i) {
+        const auto step = static_cast<std::uint32_t>(i);
+        const std::uint32_t at = up ? top - kWord * (step + 1) : top + 1 + step;
+        std::uint32_t word = 0, high = 0;
+        if (!read(at, word)) break;
+        ordered_json row{{"address", at}, {"value", word}};
+        // The return address of a call: low word, then the high bits (dsPIC); a word address (AVR).
+        if (!up || (at >= kWord && read(at + kWord, high))) {
+            const std::uint32_t pc = up ? (word & ~1U) | (high & kHighOfPc) << 16 : 2 * word;
+            if (pc != 0 && chip.is_code(pc) && places_.function_of(pc) != nullptr)
+                row["place"] = places_.place(pc);
+        }
+        words.push_back(std::move(row));
+    }
+    return words;
+}
+
+/// By how many there were.
+ordered_json BoardAccess::interrupts() const {
+    const DrivenNode::InterruptCounts& counts = *node_.interrupt_counts();
+    const double seconds = cosim::to_seconds(node_.reached() - counts.from);
+    std::vector<std::pair<std::uint64_t, int>> sorted;
+    for (const auto& [vector, taken] : counts.taken)
+        sorted.emplace_back(taken, vector);
+    std::sort(sorted.rbegin(), sorted.rend());
+    ordered_json list = ordered_json::array();
+    for (const auto& [taken, vector] : sorted)
+        list.push_back({{"name", node_.chip().vector_name(vector)},
+                        {"count", taken},
+                        {"per_s", seconds > 0 ? static_cast<double>(taken) / seconds : 0.0}});
+    return list;
 }
 
 BoardAccess::Place BoardAccess::variable(const std::string& name) const {

@@ -25,9 +25,12 @@ class BoardAccess {
     /// The same with "value", or "data" in hexadecimal.
     void write(const nlohmann::json& request);
     /// Where its program is: "pc", "place" ("main+0x12") and "line" ("main.c:43") where the image has them,
-    /// "asleep", "instructions" around it, "registers" of the core.
+    /// "asleep", "instructions" around it, "registers" of the core, the top of the "stack"; "interrupts"
+    /// since they are counted.
     nlohmann::ordered_json where() const;
     DrivenNode& node() { return node_; }
+    /// Names are those of another image from now on; empty: of the one that the board began with.
+    void use_image(const std::string& file);
 
   private:
     struct Place {
@@ -41,10 +44,16 @@ class BoardAccess {
     void write_register(std::string name, std::uint64_t value);
     void write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
 
+    void read_names(const std::string& file);
+    nlohmann::ordered_json stack() const;
+    nlohmann::ordered_json interrupts() const;
+
     struct Variable {
         std::uint32_t address = 0, bytes = 0;  ///< data address; bytes 0: the image does not say
     };
     DrivenNode& node_;
+    std::string first_image_, image_;
+    bool avr_;
     std::map<std::string, Variable> variables_;
     debug::Places places_;
 };

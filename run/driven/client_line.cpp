@@ -25,15 +25,16 @@ bool set(const volatile std::sig_atomic_t* flag) {
     return flag != nullptr && *flag != 0;
 }
 
-/// Something is to be had of `descriptor`.
-bool ready(int descriptor) {
-    pollfd asked{descriptor, POLLIN, 0};
+/// Something is to be had of `descriptor`, or (`events`) can be given to it.
+bool ready(int descriptor, short events = POLLIN) {
+    pollfd asked{descriptor, events, 0};
     return ::poll(&asked, 1, kLookMs) > 0;
 }
 
 }  // namespace
 
-ClientLine::ClientLine(const std::string& path) {
+ClientLine::ClientLine(const std::string& path, const volatile std::sig_atomic_t* interrupted)
+    : interrupted_(interrupted) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     if (path.size() >= sizeof address.sun_path)
@@ -61,22 +62,22 @@ void ClientLine::drop() {
     client_ = -1;
 }
 
-bool ClientLine::await_client(const volatile std::sig_atomic_t* interrupted) {
+bool ClientLine::await_client() {
     while (client_ < 0) {
-        if (set(interrupted)) return false;
+        if (set(interrupted_)) return false;
         if (ready(listener_)) client_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     }
     return true;
 }
 
-std::optional<std::string> ClientLine::next(const volatile std::sig_atomic_t* interrupted) {
+std::optional<std::string> ClientLine::next() {
     while (client_ >= 0) {
         if (const std::size_t end = text_.find('\n'); end != std::string::npos) {
             std::string line = text_.substr(0, end);
             text_.erase(0, end + 1);
             return line;
         }
-        if (set(interrupted)) return std::nullopt;
+        if (set(interrupted_)) return std::nullopt;
         if (!ready(client_)) continue;
         char piece[4096];
         const ssize_t got = ::recv(client_, piece, sizeof piece, 0);
@@ -91,9 +92,13 @@ void ClientLine::send(const nlohmann::ordered_json& reply) {
     const std::string line =
         reply.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     for (std::size_t at = 0; at < line.size() && client_ >= 0;) {
-        const ssize_t sent = ::send(client_, line.data() + at, line.size() - at, MSG_NOSIGNAL);
+        if (!ready(client_, POLLOUT)) {
+            if (set(interrupted_)) drop();
+            continue;
+        }
+        const ssize_t sent = ::send(client_, line.data() + at, line.size() - at, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent > 0) at += static_cast<std::size_t>(sent);
-        if (sent < 0 && errno != EINTR) drop();
+        if (sent < 0 && errno != EINTR && errno != EAGAIN) drop();
     }
 }
 

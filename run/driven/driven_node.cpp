@@ -31,9 +31,18 @@ bool DrivenNode::instruction(std::uint32_t, std::uint64_t) {
     return true;
 }
 
+void DrivenNode::count_interrupts(bool on) {
+    counts_.reset();
+    if (on) counts_.emplace().from = reached_;
+}
+
+void DrivenNode::interrupt(int vector, std::uint32_t, std::uint64_t) {
+    if (counts_) ++counts_->taken[vector];
+}
+
 void DrivenNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
                          std::vector<cosim::Message>& outbox) {
-    const bool watched = !changes_.empty();
+    const bool watched = !changes_.empty() || counts_;
     if (watched) chip_.chip->set_instrument(this, false);
     board_->advance(until, inbox, outbox);
     if (watched) chip_.chip->set_instrument(nullptr, false);

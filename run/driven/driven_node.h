@@ -6,7 +6,9 @@
 #include "emu/chip/instrument.h"
 #include "run/stats/board_chip.h"
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +26,17 @@ class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
         changes_.push_back(std::move(change));
     }
     bool changes_wait() const { return !changes_.empty(); }
+    /// From now on the interrupts and traps that are taken are counted, or not any more. While they are the
+    /// chip interprets every instruction, which changes nothing but the time that it takes.
+    void count_interrupts(bool on);
+    struct InterruptCounts {
+        cosim::Time from = 0;                ///< since the node's advance that ended there
+        std::map<int, std::uint64_t> taken;  ///< by vector
+    };
+    /// Null: they are not counted.
+    const InterruptCounts* interrupt_counts() const { return counts_ ? &*counts_ : nullptr; }
+    /// The end of the last advance.
+    cosim::Time reached() const { return reached_; }
     /// The run ends with this at the node's next advance.
     void ask_to_stop(cosim::Stop stop) { stop_wanted_ = std::move(stop); }
 
@@ -44,9 +57,11 @@ class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
 
   private:
     bool instruction(std::uint32_t pc, std::uint64_t cycle) override;
+    void interrupt(int vector, std::uint32_t pc, std::uint64_t cycle) override;
     void access(std::uint16_t, int, bool) override {}
 
     std::vector<std::function<void(debug::DebugChip&)>> changes_;
+    std::optional<InterruptCounts> counts_;
     std::unique_ptr<cosim::StatefulNode> board_;
     BoardChip chip_;
     cosim::Time reached_ = 0;

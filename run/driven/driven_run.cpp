@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "base/version/version.h"
+#include "cosim/faults/flash.h"
 #include "cosim/faults/typed_bytes.h"
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
@@ -116,20 +117,34 @@ DrivenRun::DrivenRun(const RunSetup& setup, const RunRequest& request, Planner p
     : setup_(setup),
       request_(request),
       planner_(std::move(planner)),
-      interrupted_(interrupted),
-      line_(client_socket_beside(setup.control)),
+      line_(client_socket_beside(setup.control), interrupted),
       world_(setup.control),
+      images_(setup.out / cosim::kFlashedFolder),
       origin_(origin_of(setup, request)),
       no_way_back_(why_not_back(setup, request)),
-      next_(setup.from_time) {}
+      next_(setup.from_time) {
+    for (const PlannedNode& node : setup.nodes) {
+        if (!has_board(node.what)) continue;
+        NodeDescription board = node.what;
+        images_.remember(board_fields(board).firmware);
+        if (const auto* tam = std::get_if<tam::TamSpec>(&board.kind);
+            tam != nullptr && !tam->boot_loader.empty())
+            images_.remember(tam->boot_loader);
+    }
+}
 
 std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
     NodeDescription description = decode(text);
     if (!has_board(description)) return tools::make_node(description);
+    const BoardFields there = board_fields(description);
+    there.firmware = images_.as_it_was(there.firmware);
+    if (auto* tam = std::get_if<tam::TamSpec>(&description.kind))
+        tam->boot_loader = images_.as_it_was(tam->boot_loader);
     // At power-up: what it was in a snapshot is loaded into it.
     auto node = std::make_unique<DrivenNode>(make_board(description));
     const BoardFields fields = board_fields(description);
     const bool avr = std::holds_alternative<tam::TamSpec>(description.kind);
+    if (counted_.contains(fields.name)) node->count_interrupts(true);
     boards_[fields.name] = std::make_unique<BoardAccess>(*node, fields.firmware, avr);
     return node;
 }
@@ -183,7 +198,7 @@ void DrivenRun::stand(const TakeSnapshot& take) {
         step_.reset();
         line_.send(done);
     } else {
-        if (!line_.await_client(interrupted_)) return;
+        if (!line_.await_client()) return;
         line_.send(greeting());
     }
     serve(take);
@@ -203,6 +218,8 @@ bool DrivenRun::returned() {
             if (deed.time > now_) next_ = std::min(*next_, deed.time);
         return false;
     }
+    for (const std::string& name : counted_)  // from here on, not from the snapshot
+        boards_.at(name)->node().count_interrupts(true);
     line_.send(reply(return_->id));
     return_.reset();
     step_.reset();
@@ -231,7 +248,7 @@ bool DrivenRun::compare(const json& condition) {
 
 void DrivenRun::serve(const TakeSnapshot& take) {
     for (bool go_on = false; !go_on;) {
-        const std::optional<std::string> text = line_.next(interrupted_);
+        const std::optional<std::string> text = line_.next();
         if (!text) {
             if (!line_.connected()) end("its client went away", false);
             return;
@@ -271,6 +288,8 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
         answered["text"] = value_text(answered);
     } else if (op == "where") {
         answered.update(board(request).where());
+    } else if (op == "interrupts") {
+        count_interrupts(request);
     } else if (op == "faults") {
         answered.update(possible_faults(setup_.scenario));
     } else if (op == "write") {
@@ -295,16 +314,28 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
         add_fault(request, take);
     } else if (op == "type") {
         type(request, take);
+    } else if (op == "flash") {
+        flash(request, take);
     } else if (op != "info") {
-        constexpr std::array<std::string_view, 14> kOps{"info",    "step",   "read", "where", "write",
-                                                        "capture", "frames", "act",  "save",  "faults",
-                                                        "back",    "fault",  "type", "end"};
+        constexpr std::array<std::string_view, 16> kOps{
+            "info", "step", "read",   "where", "write", "interrupts", "capture", "frames",
+            "act",  "save", "faults", "back",  "fault", "type",       "flash",   "end"};
         throw InputError(
             "", "op", fmt::format("there is no '{}'", op),
             fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
     }
     if (op == "info") answered.update(greeting());
     return answered;
+}
+
+void DrivenRun::count_interrupts(const json& request) {
+    const bool on = request.value("count", true);
+    board(request).node().count_interrupts(on);
+    const std::string name = request.at("node");
+    if (on)
+        counted_.insert(name);
+    else
+        counted_.erase(name);
 }
 
 void DrivenRun::begin_step(const json& request) {
@@ -435,10 +466,44 @@ void DrivenRun::type(const json& request, const TakeSnapshot& take) {
     go_on_with(std::move(with), request.value("id", json()), take, [&] { typed_.push_back(typed); });
 }
 
+void DrivenRun::flash(const json& request, const TakeSnapshot& take) {
+    if (!no_way_back_.empty()) throw InputError("", "flash", no_way_back_, "a run that can go back");
+    refuse_waiting_change("flash");
+    board(request);  // refuses what is none
+    const std::string name = request.at("node"), file = request.at("file");
+    const auto node = std::find_if(setup_.nodes.begin(), setup_.nodes.end(),
+                                   [&](const PlannedNode& one) { return one.name == name; });
+    const KeptImages::Copy image = images_.copy(node->what, file);
+    std::string source = std::filesystem::absolute(file).lexically_normal().string();
+    std::replace_if(
+        source.begin(), source.end(), [](char c) { return c == '"' || c == '\n'; }, '?');
+    const std::string fault =
+        fmt::format(R"({} node={} at="{}.{:012} s" image="{}" sha256={} source="{}" may_not_fire=true)",
+                    cosim::kFlashKind, name, now_ / cosim::kSecond, now_ % cosim::kSecond, image.file,
+                    image.sha256, source);
+    RunRequest with = request_;
+    with.faults.push_back(fault);
+    go_on_with(std::move(with), request.value("id", json()), take,
+               [&] { typed_.push_back({.time = now_, .end = now_, .fault = fault}); });
+}
+
+std::string DrivenRun::image_of(const std::string& board) const {
+    std::string image;
+    cosim::Time latest = -1;
+    for (const cosim::FaultSpec& fault : setup_.scenario.faults) {
+        if (fault.kind != cosim::kFlashKind || fault.node != board || fault.begin >= now_ ||
+            fault.begin < latest)
+            continue;
+        latest = fault.begin;
+        image = fault.parameters.text("image");
+    }
+    return image;
+}
+
 void DrivenRun::go_on_with(RunRequest with, const json& id, const TakeSnapshot& take,
                            const std::function<void()>& accepted) {
     RunSetup next = planned(with);
-    check_origin(origin_, next, now_, "");
+    check_origin(origin_, next, now_, "", images_.remembered());
     // Of one snapshot both: it is checked first, and kept then.
     cosim::RunSnapshot here = take();
     cosim::check_link_faults(here, next.links, next.scenario.faults, next.scenario.seed);
@@ -520,7 +585,10 @@ void DrivenRun::end(const std::string& reason, bool success) {
 BoardAccess& DrivenRun::board(const json& request) {
     const std::string name = request.at("node");
     const auto found = boards_.find(name);
-    if (found != boards_.end()) return *found->second;
+    if (found != boards_.end()) {
+        found->second->use_image(image_of(name));
+        return *found->second;
+    }
     std::vector<std::string_view> known;
     for (const auto& one : boards_)
         known.push_back(one.first);

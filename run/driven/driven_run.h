@@ -8,8 +8,8 @@
 // It can go back, and take a fault that begins later: it is then given up (cosim::Reverted) and begun again
 // from a snapshot, on the same line to the client. What the client did until then is done again: what it
 // wrote to boards while the run stands still, commands to the world as events of it, for the world is
-// executed from its beginning. What it types into serial lines is a fault of its own kind, `type`, that going
-// back takes away.
+// executed from its beginning. What it types into serial lines is a fault of its own kind, `type`, what it
+// flashes into boards one of the kind `flash`: going back takes both away.
 
 #include "cosim/conductor.h"
 #include "cosim/resume/run_snapshot.h"
@@ -19,6 +19,7 @@
 #include "run/driven/board_access.h"
 #include "run/driven/client_line.h"
 #include "run/driven/frame_watch.h"
+#include "run/driven/kept_images.h"
 #include "run/driven/world_commands.h"
 #include "run/expectations/line_watch.h"
 #include "run/past/run_history.h"
@@ -30,6 +31,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,7 +46,7 @@ class DrivenRun {
   public:
     static constexpr int kProtocol = 1;
     /// Rises when requests are added; those that were there stay as they are.
-    static constexpr int kRevision = 2;
+    static constexpr int kRevision = 3;
 
     /// Plans the run of a request (run/setup.h).
     using Planner = std::function<RunSetup(const RunRequest&)>;
@@ -89,12 +91,12 @@ class DrivenRun {
         cosim::Time to = 0;
         nlohmann::json id;  ///< of the request
     };
-    /// What the client typed into a serial line.
+    /// What the client typed into a serial line, or flashed into a board.
     struct Typed {
-        cosim::Time time = 0;  ///< the run stood still there
-        cosim::Time end = 0;   ///< of its last byte
-        std::string link{}, from{};
-        std::string fault{};  ///< among those of the request
+        cosim::Time time = 0;        ///< the run stood still there
+        cosim::Time end = 0;         ///< of its last byte
+        std::string link{}, from{};  ///< empty: it was flashed
+        std::string fault{};         ///< among those of the request
     };
     using TakeSnapshot = std::function<cosim::RunSnapshot()>;
 
@@ -112,12 +114,16 @@ class DrivenRun {
     /// Answers requests until one lets the run go on.
     void serve(const TakeSnapshot& take);
     nlohmann::ordered_json answer(const nlohmann::json& request, const TakeSnapshot& take, bool& go_on);
+    void count_interrupts(const nlohmann::json& request);
     void begin_step(const nlohmann::json& request);
     void save(const nlohmann::json& request, const TakeSnapshot& take);
     /// Both return only by exceptions: Reverted, or InputError for what cannot be.
     [[noreturn]] void go_back(const nlohmann::json& request);
     [[noreturn]] void add_fault(const nlohmann::json& request, const TakeSnapshot& take);
     [[noreturn]] void type(const nlohmann::json& request, const TakeSnapshot& take);
+    [[noreturn]] void flash(const nlohmann::json& request, const TakeSnapshot& take);
+    /// The image that `board` has now: the one of its description, or the last that was flashed.
+    std::string image_of(const std::string& board) const;
     /// Begins the run again here, with the faults of `with`. `accepted`: called once they are.
     [[noreturn]] void go_on_with(RunRequest with, const nlohmann::json& id, const TakeSnapshot& take,
                                  const std::function<void()>& accepted = {});
@@ -135,11 +141,12 @@ class DrivenRun {
     RunSetup setup_;
     RunRequest request_;
     Planner planner_;
-    const volatile std::sig_atomic_t* interrupted_;
     ClientLine line_;
     WorldCommands world_;
     FrameWatch frames_;
     std::map<std::string, std::unique_ptr<BoardAccess>> boards_;
+    KeptImages images_;
+    std::set<std::string> counted_;  ///< boards whose interrupts are
     std::string origin_;
     std::string no_way_back_;  ///< why; empty: there is one
     std::optional<RunWritten> written_;

@@ -2,6 +2,7 @@
 
 #include "base/sha256.h"
 #include "base/version/version.h"
+#include "cosim/faults/flash.h"
 
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,18 @@ std::vector<UsedFile> used_files(const RunSetup& setup) {
         add(node.name, "firmware", board_fields(board).firmware);
         if (const auto* tam = std::get_if<tam::TamSpec>(&node.what.kind))
             add(node.name, "firmware", tam->boot_loader);
+    }
+    return files;
+}
+
+std::vector<UsedFile> flashed_files(const RunSetup& setup) {
+    std::vector<UsedFile> files;
+    for (const cosim::FaultSpec& fault : setup.scenario.faults) {
+        if (fault.kind != cosim::kFlashKind) continue;
+        const std::string file = fault.parameters.text("image");
+        std::string hash = fault.parameters.text("sha256");
+        if (hash.empty() && std::ifstream(file)) hash = sha256_of_file(file);
+        files.push_back({fault.node, "flashed", file, hash});
     }
     return files;
 }

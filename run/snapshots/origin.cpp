@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 namespace puckloop::tools {
 
@@ -93,7 +94,7 @@ std::string other_key(const json& then, const json& now) {
     return {};
 }
 
-void check_run(const json& then, const json& now, const std::string& file) {
+void check_run(json then, json now, const std::string& file, const std::set<std::string>& kept) {
     const std::string expected = "the run that was saved, but for later faults";
     for (const auto& [name, spec] : now.at("nodes").items()) {
         if (!then.at("nodes").contains(name))
@@ -104,6 +105,10 @@ void check_run(const json& then, const json& now, const std::string& file) {
     }
     if (const std::string name = other_key(then.at("nodes"), now.at("nodes")); !name.empty())
         throw InputError(file, name, "is no part of this run", expected);
+    for (const std::string& one : kept) {
+        then.at("files").erase(one);
+        now.at("files").erase(one);
+    }
     if (const std::string name = other_key(then.at("files"), now.at("files")); !name.empty())
         throw InputError(file, name, "has changed since the run was saved", "the file as it was");
     if (then.at("links") != now.at("links")) throw InputError(file, "links", "are others", expected);
@@ -178,11 +183,11 @@ RunRequest request_from(const std::string& origin, const RunRequest& request, co
     }
 }
 
-void check_origin(const std::string& origin, const RunSetup& setup, cosim::Time time,
-                  const std::string& file) {
+void check_origin(const std::string& origin, const RunSetup& setup, cosim::Time time, const std::string& file,
+                  const std::set<std::string>& kept) {
     try {
         const json then = json::parse(origin);
-        check_run(then.at("run"), run_of(setup), file);
+        check_run(then.at("run"), run_of(setup), file, kept);
         check_faults(then.at("faults"), faults_of(setup), time, file);
     } catch (const json::exception& error) {
         throw InputError(file, "", fmt::format("does not say whose run it is: {}", reason_of(error)));

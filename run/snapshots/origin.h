@@ -5,6 +5,7 @@
 #include "run/description/run_request.h"
 #include "run/description/run_setup.h"
 
+#include <set>
 #include <string>
 
 namespace puckloop::tools {
@@ -17,7 +18,8 @@ std::string origin_of(const RunSetup& setup, const RunRequest& request);
 RunRequest request_from(const std::string& origin, const RunRequest& request, const std::string& file);
 
 /// Throws InputError naming `file` if `setup` is of another run than `origin`, whose snapshot is of `time`.
-void check_origin(const std::string& origin, const RunSetup& setup, cosim::Time time,
-                  const std::string& file);
+/// What has become of the files in `kept` does not matter: they are there as they were.
+void check_origin(const std::string& origin, const RunSetup& setup, cosim::Time time, const std::string& file,
+                  const std::set<std::string>& kept = {});
 
 }  // namespace puckloop::tools

@@ -1,11 +1,13 @@
 """The client of clients/python against real runs, in both placements."""
 
+import hashlib
 import json
 import pathlib
+import shutil
 import stat
 import unittest
 
-from kit import InFolder
+from kit import SOURCE, InFolder
 
 import puckloop
 
@@ -267,6 +269,127 @@ class Client(InFolder):
         with puckloop.start(scenario("1 s"), out=self.folder / "again", options=["--events", str(done)]) as run:
             run.step(to="900 ms")
             self.assertEqual(run.end().report["trace_sha256"], traces[0])
+
+    def test_an_image_is_flashed_into_a_running_robot(self):
+        # The range-and-bearing firmware is for another chip. The image is built again while the run goes on.
+        images = SOURCE / "firmware"
+        image = self.folder / "build/robot.hex"
+        image.parent.mkdir()
+        traces, out = [], self.folder / "out"
+        with puckloop.start(scenario("1 s"), out=out) as run:
+            board = run.board("robot0.pic")
+            run.step(to="300 ms")
+            for file, wrong in ((self.folder / "none.hex", "none.hex: no such file"),
+                                (SOURCE / "README.md", "no known image format"),
+                                (images / "rab/rab.hex", "dsPIC30F6014A"), (images, "directory")):
+                with self.assertRaisesRegex(puckloop.RequestError, wrong) as refused:
+                    run.flash("robot0.pic", file)
+                self.assertNotIn("\n", str(refused.exception))
+            with self.assertRaisesRegex(puckloop.RequestError, 'did you mean "robot0.pic"'):
+                run.flash("robot0.pik", images / "can/can.hex")
+            self.assertEqual(run.time_s, 0.3)
+            before = board.memory(0x900, 64)
+            run.step(to="400 ms")
+            shutil.copy(images / "ears/ears.hex", image)
+            run.flash("robot0.pic", image)
+            run.step(to="500 ms")
+            run.back("350 ms")  # the old program is there again
+            run.step(to="400 ms")
+            shutil.copy(images / "epuck/epuck_ircom.elf", image)
+            run.flash("robot0.pic", image)
+            image.write_text("being built\n")
+            self.assertEqual(run.time_s, 0.4)
+            run.step(for_="1 ms")
+            # Going back there and on again finds the image as it was, and its names.
+            self.assertEqual(board.variable("frozen").address, 0x93d)
+            run.step(to="700 ms")
+            run.back("450 ms")
+            run.step(to="800 ms")
+            run.back("300 ms")
+            self.assertEqual(board.memory(0x900, 64), before)
+            with self.assertRaisesRegex(puckloop.RequestError, "no symbols"):
+                board.variable("frozen")
+            run.step(to="400 ms")
+            shutil.copy(images / "epuck/epuck_ircom.elf", image)
+            run.flash("robot0.pic", image)
+            image.unlink()
+            run.step(to="900 ms")
+            report = run.end().report
+        self.assertEqual([fault["fired"] for fault in report["faults"]], [1])
+        self.assertEqual([reset["cause"] for reset in report["nodes"]["robot0.pic"]["resets"]], ["POR", "EXTR"])
+        flashed = [file for file in report["files"] if file["role"] == "flashed"]
+        self.assertEqual([file["node"] for file in flashed], ["robot0.pic"])
+        self.assertEqual(flashed[0]["sha256"],
+                         hashlib.sha256((images / "epuck/epuck_ircom.elf").read_bytes()).hexdigest())
+        traces.append(report["trace_sha256"])
+        text = (out / "events.toml").read_text()
+        self.assertEqual(text.count("[[fault]]"), 1)
+        self.assertIn(flashed[0]["sha256"], text)
+        self.assertIn(str(image), text)
+        # Again: where it was, with the folder moved, and as a fault in one line.
+        again = self.folder / "again.toml"
+        again.write_text(text)
+        moved = self.folder / "moved"
+        line = f'flash node=robot0.pic at="0.4 s" image={images}/epuck/epuck_ircom.elf'
+        for name, more in (("b", {"options": ["--events", str(again)]}), ("c", {"faults": [line]}),
+                           ("d", {"options": ["--events", str(moved / "events.toml")]})):
+            if name == "d":
+                shutil.move(out, moved)
+            with puckloop.start(scenario("1 s"), out=self.folder / name, **more) as run:
+                run.step(to="900 ms")
+                traces.append(run.end().report["trace_sha256"])
+        self.assertEqual(len(set(traces)), 1, traces)
+        # Another image under the same name is not what was flashed.
+        copy, = (moved / "flashed").glob(flashed[0]["sha256"][:12] + "-*")
+        copy.write_bytes((images / "ears/ears.hex").read_bytes())
+        with self.assertRaisesRegex(puckloop.StartError, "another image than the one that was flashed"):
+            puckloop.start(scenario("1 s"), out=self.folder / "e", options=["--events", str(moved / "events.toml")])
+
+    def test_interrupts_are_counted_and_nothing_else_changes(self):
+        traces = []
+        for counted in (False, True):
+            with puckloop.start(scenario("1 s"), out=self.folder / f"{counted}") as run:
+                run.step(to="400 ms")
+                if counted:
+                    self.assertNotIn("interrupts", run._ask("where", {"node": "robot0.pic"}))
+                    run._ask("interrupts", {"node": "robot0.pic"})
+                run.step(to="500 ms")
+                if counted:
+                    taken = {one["name"]: one for one in run._ask("where", {"node": "robot0.pic"})["interrupts"]}
+                    self.assertAlmostEqual(taken["ADC"]["count"], 0.1 / 142.4e-6, delta=15)
+                    self.assertAlmostEqual(taken["ADC"]["per_s"], 10 * taken["ADC"]["count"], delta=1)
+                    run.back("450 ms")  # they are counted from there on
+                    run.step(to="460 ms")
+                    taken = {one["name"]: one for one in run._ask("where", {"node": "robot0.pic"})["interrupts"]}
+                    self.assertLess(taken["ADC"]["count"], 200)
+                    run._ask("interrupts", {"node": "robot0.pic", "count": False})
+                    self.assertNotIn("interrupts", run._ask("where", {"node": "robot0.pic"}))
+                run.step(to="900 ms")
+                traces.append(run.end().report["trace_sha256"])
+        self.assertEqual(traces[0], traces[1])
+
+    def test_a_robots_own_image_may_be_built_again_meanwhile(self):
+        image = self.folder / "robot.elf"
+        first, second = SOURCE / "firmware/epuck/epuck.elf", SOURCE / "firmware/epuck/epuck_ircom.elf"
+        traces = []
+        for rebuilt in (False, True):
+            shutil.copy(first, image)
+            with puckloop.start(scenario("1 s"), out=self.folder / f"{rebuilt}",
+                                firmware={"robot0.pic": image}) as run:
+                run.step(to="200 ms")
+                if rebuilt:
+                    shutil.copy(second, image)
+                run.step(to="400 ms")
+                run.back("50 ms")
+                run.step(to="300 ms")
+                run.flash("robot0.pic", second)
+                run.step(to="600 ms")
+                run.back("250 ms")
+                run.step(to="300 ms")
+                run.flash("robot0.pic", image if rebuilt else second)
+                run.step(to="900 ms")
+                traces.append(run.end().report["trace_sha256"])
+        self.assertEqual(traces[0], traces[1])
 
     def test_text_is_expected_in_simulated_time(self):
         with self.begun() as run:

@@ -61,10 +61,28 @@ end
         self.assertEqual(report["events"], [])  # what was done was taken back
         self.assertTrue((self.out.parent / "a.snapshot").is_file())
 
+    def test_an_image_is_flashed_and_taken_back(self):
+        status, said, wrong = self.shell(f"""step 500ms
+flash {SOURCE / "firmware/epuck/epuck_ircom.elf"}
+step 1ms
+read frozen
+back 0.3
+read frozen
+run 0.5
+flash {SOURCE / "firmware/epuck/epuck_ircom.elf"}
+run 1
+end
+""")
+        self.assertEqual((status, wrong), (1, ""), said)
+        self.assertEqual(len(re.findall(r"(?m)^frozen = 0x", said)), 1)  # of the image with symbols
+        self.assertIn("its image has no symbols", said)
+        self.assertEqual(json.loads((self.out / "report.json").read_text())["faults"][0]["fired"], 1)
+
     def test_what_is_refused_is_said_and_counted(self):
         lines = ["nonsense", "until TMR1 ~ 3", "until frame x", "read", "read TMR9", "read -", "write TRISA zz",
                  "write TRISA", "write U2STA.TRMT 1", "board nobody", "back 1", "fault dropp link=robot0.uart", "act fly",
                  "frames", "step x", "save", "read U2STA.NONE", "type", "type robot0.uart", "type robot0.uart robot0.pic",
+                 "flash", "flash /nowhere.hex", f"flash {SOURCE / 'README.md'}", f"flash {SOURCE / 'firmware/rab/rab.hex'}",
                  "type robot0.uart nobody x", 'type robot0.uart robot0.pic "\\q"']
         status, said, _ = self.shell("step\n" + "\n".join(lines) + "\nstep\n")
         self.assertEqual(status, 1)

@@ -71,6 +71,9 @@ class Pages(InFolder):
     def test_hang(self):
         self.check_page("hang.md", 4)
 
+    def test_stands_still(self):
+        self.check_page("stands_still.md", 3)
+
     def test_controller(self):
         self.check_page("controller.md", 5)
 

@@ -4,13 +4,14 @@ import json
 import os
 import pathlib
 import queue
+import shutil
 import subprocess
 import sys
 import threading
 import time
 import unittest
 
-from kit import PROGRAM, InFolder, problems, puckloop
+from kit import PROGRAM, SOURCE, InFolder, problems, puckloop
 
 PATIENCE = 60  # seconds of wall time
 
@@ -182,6 +183,28 @@ class Runs(Served):
         self.assertEqual(json.loads((results / "report.json").read_text())["seed"], 3)
         self.failed(client.tool("read", run=run, board="robot0.pic", register="PC"), "the run is over")
         self.assertTrue(self.done(client.tool("list_runs"))["runs"][0]["ended"])
+
+    def test_typing_and_flashing(self):
+        self.file("room.toml", ROOM)
+        client = self.client()
+        run = self.done(client.tool("start_run", scenario="room.toml"))["run"]
+        self.done(client.tool("step", run=run, to="300 ms"))
+        self.done(client.tool("type", **{"run": run, "link": "robot0.uart", "from": "robot0.pic", "text": "hi"}))
+        self.done(client.tool("type", **{"run": run, "link": "robot0.uart", "from": "robot0.pic", "data": "0d0a"}))
+        seen = self.done(client.tool("expect", **{"run": run, "link": "robot0.uart", "from": "robot0.pic", "text": "i",
+                                                  "timeout": "10 ms"}))
+        self.assertFalse(seen["met"])  # what is typed is marked: nobody sent it
+        self.failed(client.tool("type", **{"run": run, "link": "robot0.uart", "from": "robot0.pic"}), "one of 'text'")
+        shutil.copy(SOURCE / "firmware/ears/ears.hex", self.folder / "ears.hex")
+        for image, part in (("none.hex", "no such image"), ("/etc/passwd", "outside of"), ("own", "a file"),
+                            ("room.toml", "no known image format")):
+            self.failed(client.tool("flash", run=run, board="robot0.pic", image=image), part)
+        for fault in ("flash node=robot0.pic image=/etc/passwd", "kind=flash node=robot0.pic image=/etc/passwd"):
+            self.failed(client.tool("inject_fault", run=run, fault=fault), "the tool flash")
+            self.failed(client.tool("start_run", scenario="room.toml", faults=[fault]), "the tool flash")
+        self.done(client.tool("flash", run=run, board="robot0.pic", image="ears.hex"))
+        self.done(client.tool("step", run=run, to="500 ms"))
+        self.assertEqual(self.done(client.tool("end_run", run=run))["faults"][-1]["fired"], 1)
 
     def test_a_snapshot_is_gone_on_from_with_a_fault(self):
         self.file("room.toml", ROOM)

@@ -164,6 +164,9 @@ class Live(unittest.TestCase):
         self.assertEqual(len(refused), 1)
         self.assertIn("did you mean", refused[0]["answer"])
         for request in ({"do": "back"}, {"do": "back", "to_s": "x"}, {"do": "fault"}, {"do": "until"},
+                        {"do": "flash"}, {"do": "flash", "board": "robot0.pic"}, {"do": "flash", "file": "x"},
+                        {"do": "flash", "board": "x" * 65, "file": "x"},
+                        {"do": "flash", "board": "robot0.pic", "file": "x" * 1001},
                         {"do": "until", "condition": {}}, {"do": "until", "condition": "TMR1 > 2", "ms": 1e9},
                         {"do": "until", "condition": "x" * 1001}, {"do": "type"},
                         {"do": "type", "link": "robot0.uart", "from": "robot0.pic"},
@@ -204,6 +207,34 @@ class Live(unittest.TestCase):
         self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
         wrong = puckloop("run", SCENARIO, "--view-port", 5000, "--out", self.out)
         self.assertEqual(wrong.returncode, 2)
+
+    def test_one_board_alone(self):
+        image = SOURCE / "firmware/epuck/epuck.elf"
+        self.run = subprocess.Popen([PROGRAM, "exec", image, "--view", "--seconds", "1", "--selector", "3"],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.folder)
+        self.addCleanup(self.end, self.run)
+        address = self.run.stdout.readline().strip()
+        self.ask(address, {"page": "a", "do": "step", "ms": 100})
+        # As the bench's other end would: wake-up and configuration, and the board answers.
+        self.ask(address, {"page": "a", "do": "type", "link": "board.uart2", "from": "board.uart2", "text": "\x01\0\0\0\0"})
+        self.ask(address, {"page": "a", "do": "play", "speed": 0})
+        state = self.wait(address, lambda s: s["over"])
+        self.assertEqual([act["refused"] for act in state["acts"]], [False], state)
+        self.run.send_signal(signal.SIGINT)
+        self.run.communicate(timeout=60)
+        self.assertEqual(self.run.returncode, 0)
+        report = self.report(self.folder / "out/exec_epuck")
+        self.assertEqual(report["links"]["board.uart2"]["from_b"]["uart_frames"], 72)
+        scenario = (self.folder / "out/exec_epuck.toml").read_text()
+        self.assertIn("selector = 3", scenario)
+        self.assertEqual(puckloop("run", "out/exec_epuck.toml", folder=self.folder).returncode, 0)  # to begin one's own from
+        for words, part in ((("--json",), "--json"), (("--uart1", "pty"), "script:FILE"), (("--mcu", "dspic30f6014a"), "--mcu")):
+            wrong = puckloop("exec", image, "--view", *words, folder=self.folder)
+            self.assertEqual(wrong.returncode, 2)
+            self.assertIn(part, wrong.stderr)
+        wrong = puckloop("exec", "nowhere.elf", "--board", "pic", "--view", folder=self.folder)
+        self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1))
+        self.assertFalse((self.folder / "out/exec_nowhere.toml").exists())
 
     def test_the_page_goes_back_looks_and_injects(self):
         if not find_chromium():
@@ -256,6 +287,53 @@ class Live(unittest.TestCase):
         self.assertGreater(self.report()["faults"][0]["fired"], 0)
         self.assertEqual(self.report()["faults"][1]["fired"], 6)
         self.assertIn('data = "74797065640d"', (self.out / "events.toml").read_text())
+
+    def test_the_page_flashes_an_image(self):
+        if not find_chromium():
+            self.skipTest("no chromium is installed")
+        image = self.folder / "robot.elf"
+        image.write_bytes((SOURCE / "firmware/epuck/epuck_ircom.elf").read_bytes())
+        address = self.start(2)
+        browser = Browser()
+        self.addCleanup(browser.close)
+        browser.open(address)
+        browser.wait("document.body && document.body.dataset.ready")
+        flash = """(() => { const { board } = window.puckloopView; board.image.value = %s;
+            document.getElementById('flash').click(); })()"""
+        browser.value("""(() => { const { board } = window.puckloopView; board.chooser.value = 'robot0.pic';
+            board.look(); board.add('frozen'); window.puckloopView.drive({ do: 'step', ms: 500 }); })()""")
+        browser.wait("Number(document.body.dataset.simulated) === 0.5")
+        # Interrupts are counted from here on: the A/D scans of the project's firmware come each 142.4 us.
+        browser.value("document.getElementById('count-interrupts').click()")
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 100 })")
+        browser.wait("document.querySelectorAll('#interrupts tr').length > 1")
+        rates = browser.value("""Object.fromEntries([...document.querySelectorAll('#interrupts tr')].map((row) =>
+            [row.cells[0].textContent, parseFloat(row.cells[2].textContent)]))""")
+        self.assertAlmostEqual(rates["ADC"], 1 / 142.4e-6, delta=300)
+        self.assertEqual(browser.value("document.querySelectorAll('#stack div').length"), 16)
+        browser.value("document.getElementById('count-interrupts').click()")
+        browser.wait("document.querySelectorAll('#interrupts tr').length === 0")
+        for file, part in ((SOURCE / "README.md", "no known image format"), ("nowhere.hex", "nowhere.hex"),
+                           (SOURCE / "firmware/rab/rab.hex", "rab.hex")):
+            browser.value(flash % json.dumps(str(file)))
+            browser.wait(f"document.getElementById('detail').textContent.includes({json.dumps(part)})")
+            self.assertEqual(browser.value("document.getElementById('detail').className"), "failed")
+        self.assertEqual(browser.value("document.body.dataset.epoch"), "0")
+        browser.value(flash % json.dumps(str(image)))
+        browser.wait("document.body.dataset.epoch === '1'")
+        image.unlink()
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 100 })")
+        browser.wait("document.querySelector('#watches tr') && document.querySelector('#watches tr').textContent.startsWith('frozen0x')")
+        browser.wait("document.getElementById('where').textContent.includes('.c:')")  # the ELF's lines; the HEX has none
+        browser.value("window.puckloopView.drive({ do: 'back', to_s: 0.4 })")
+        browser.wait("document.body.dataset.epoch === '2'")
+        browser.wait("document.querySelector('#watches tr').textContent.includes('no symbols')")
+        self.assertNotIn(".c:", browser.value("document.getElementById('where').textContent"))
+        browser.value("document.getElementById('end-run').click()")
+        browser.wait("document.body.dataset.over === 'true'")
+        self.run.wait(60)
+        self.assertEqual(browser.errors, [])
+        self.assertEqual(self.report()["faults"], [])  # it was taken back
 
     def test_the_page_plays_pauses_steps_and_acts(self):
         if not find_chromium():

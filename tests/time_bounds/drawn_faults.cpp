@@ -1,5 +1,6 @@
 #include "tests/time_bounds/drawn_faults.h"
 
+#include "cosim/faults/flash.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "scenarios/reader/faults/fault_places.h"
 
@@ -161,7 +162,7 @@ std::string when(Draw& draw, const KindInfo& kind, double end) {
 std::string drawn_fault(Draw& draw, const FaultPlace& place, double end) {
     std::vector<const KindInfo*> kinds, ends;
     for (const KindInfo& kind : cosim::all_kinds())
-        if (kind.place == place.kind) {
+        if (kind.place == place.kind && kind.name != cosim::kFlashKind) {  // needs an image for the board
             kinds.push_back(&kind);
             if (has(kEnds, kind.name)) ends.push_back(&kind);
         }

@@ -121,6 +121,16 @@ std::size_t Command::count(const std::string& option) const {
     return app_.count(option);
 }
 
+std::vector<std::string> Command::given() const {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app_.get_options()) {
+        if (option->count() == 0) continue;
+        const auto& longs = option->get_lnames();
+        names.push_back(longs.empty() ? option->get_name() : "--" + longs.front());
+    }
+    return names;
+}
+
 template Option* Command::add_option(const std::string&, std::string&, const std::string&);
 template Option* Command::add_option(const std::string&, std::filesystem::path&, const std::string&);
 template Option* Command::add_option(const std::string&, double&, const std::string&);

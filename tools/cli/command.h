@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -59,6 +60,8 @@ class Command {
 
     bool subcommand_given() const;
     std::size_t count(const std::string& option) const;  ///< how often it was given
+    /// The options that were given, by their long names; a positional argument by its name.
+    std::vector<std::string> given() const;
 
   private:
     struct Parts;

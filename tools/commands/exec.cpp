@@ -8,6 +8,7 @@
 #include "tools/cli/log_options.h"
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
+#include "tools/commands/exec_view.h"
 
 #include <fmt/format.h>
 
@@ -74,6 +75,7 @@ struct ExecArguments {
     bool realtime = false;
     bool unpaced = false;
     bool interpret = false;
+    bool view = false;
 };
 
 /// The board whose chip the image is for, said on standard error.
@@ -118,6 +120,10 @@ void describe(Command& app, ExecArguments& a) {
            "with the chip at its first instruction; without --seconds the run has no end "
            "(docs/debugging.md)")
         ->type_name("PLACE");
+    app.add_flag(
+        "--view", a.view,
+        "open a page in the browser that shows the board and drives it: step, back, registers, UARTs, "
+        "faults, another image (--board; docs/view.md)");
     exec::InstrumentOptions& i = o.instruments;
     app.add_option(
            "--watch", i.watches,
@@ -251,6 +257,18 @@ void describe(Command& app, ExecArguments& a) {
                  "interpret every instruction of the chips (default: hot code is translated)");
 }
 
+/// Its run is one of `puckloop run --view`, of a scenario with this board alone.
+int view_board(const Command& command, const ExecArguments& a) {
+    const std::vector<std::string>& taken = options_with_view();
+    for (const std::string& option : command.given())
+        if (std::find(taken.begin(), taken.end(), option) == taken.end())
+            throw InputError("", option, "does not go with --view",
+                             "the page, or a scenario with `puckloop run --view`");
+    const std::filesystem::path scenario = write_board_scenario(a.options, a.revision, a.errata);
+    fmt::print(stderr, "puckloop: {} has the board's scenario\n", scenario.string());
+    return run_with_page(scenario);
+}
+
 }  // namespace
 
 void declare_exec(Command& app, int& status) {
@@ -303,6 +321,10 @@ void declare_exec(Command& app, int& status) {
             bench.target.log = bench.log_folder + "/board.log";
             bench.target.camera_log = bench.log_folder + "/camera.csv";
             bench.target.rab_log = bench.log_folder + "/rab.log";
+        }
+        if (a.view) {
+            status = view_board(*command, a);
+            return;
         }
         if (a.realtime || a.unpaced) a.options.realtime = a.realtime;
         status = exec::run_exec(a.options);

@@ -20,6 +20,7 @@
 #include "tools/cli/log_options.h"
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
+#include "tools/commands/exec_view.h"
 #include "tools/guide/scenario_name.h"
 #include "tools/shell/shell.h"
 #include "tools/viewer/client_run.h"
@@ -187,6 +188,13 @@ int run_driven(RunOptions& options) {
 }
 
 }  // namespace
+
+int run_with_page(const std::filesystem::path& scenario) {
+    RunOptions options;
+    options.request.scenario = scenario;
+    options.view = true;
+    return run_driven(options);
+}
 
 void declare_run(Command& app, int& status) {
     Command* command =

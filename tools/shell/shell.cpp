@@ -145,6 +145,10 @@ struct ShellCommands {
         }
         shell.take(shell.ask({{"op", "type"}, {"link", link}, {"from", from}, {"text", text}}));
     }
+    static void flash(Shell& shell, const std::string& argument) {
+        const auto file = std::filesystem::absolute(needed(argument, "a file"));
+        shell.take(shell.ask({{"op", "flash"}, {"node", shell.board_}, {"file", file.string()}}));
+    }
     static void save(Shell& shell, const std::string& argument) {
         // The run may have been started in another folder.
         const auto file = std::filesystem::absolute(needed(argument, "a file"));
@@ -190,6 +194,7 @@ std::span<const Shell::Command> ShellCommands::all() {
         Shell::Command{
             "type", "LINK FROM TEXT",
             "into a line as that end, \\r and \\n in \"...\": type robot0.uart1 robot0.uart1 \"v\\r\"", type},
+        Shell::Command{"flash", "FILE", "another image into the board's chip, which is then reset", flash},
         Shell::Command{"frames", "[KEY=VALUE...]", "keep frames like this from now on; show those kept",
                        frames},
         Shell::Command{"save", "FILE", "a snapshot, for `puckloop run --from`", save},

@@ -114,6 +114,13 @@ void Driver::carry_out(const Work& work) {
     case Work::Kind::Type:
         type(work.text);
         break;
+    case Work::Kind::Flash:
+        restart(json{{"op", "flash"}, {"node", work.board}, {"file", work.text}}.dump(),
+                fmt::format("flash {} into {}", fs::path(work.text).filename().string(), work.board));
+        break;
+    case Work::Kind::Ask:
+        run_.ask(work.text);
+        break;
     case Work::Kind::Look:
         break;
     }
@@ -286,6 +293,21 @@ std::string Driver::request(const std::string& text) {
             return "a text of at most 1000 bytes is expected";
         const json request{{"op", "type"}, {"link", link}, {"from", from}, {"text", typed}};
         waiting_.push_back({.kind = Work::Kind::Type, .text = request.dump()});
+    } else if (what == "interrupts") {
+        const std::string board = string_of("board");
+        if (board.empty() || board.size() > kLongestName) return "a board's name is expected";
+        const auto on = asked.find("count");
+        if (on == asked.end() || !on->is_boolean()) return "whether they are counted is expected";
+        const json request{{"op", "interrupts"}, {"node", board}, {"count", on->get<bool>()}};
+        waiting_.push_back({.kind = Work::Kind::Ask, .text = request.dump()});
+    } else if (what == "flash") {
+        const std::string board = string_of("board"), file = string_of("file");
+        if (board.empty() || board.size() > kLongestName) return "a board's name is expected";
+        if (file.empty() || file.size() > kLongestCommand) return "a file is expected";
+        std::error_code none;  // the run may have been started in another folder
+        playing_ = false;
+        waiting_.push_back(
+            {.kind = Work::Kind::Flash, .text = fs::absolute(file, none).string(), .board = board});
     } else if (what == "look") {
         const auto items = asked.find("items");
         const std::string board = string_of("board");

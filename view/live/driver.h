@@ -30,10 +30,10 @@ class Driver {
     /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "until" with "condition" (as
     /// typed), "board" (that it means if it names none) and "ms" (at most so long), "back" with "to_s",
     /// "fault" with "fault" (as --fault), "type" with "link", "from" and "text" (what is typed into the line
-    /// as if that end had sent it), "look" with "board" and "items" (what to read, as typed, at most
-    /// kMostItems), "end", "take". The
-    /// first page that asks for anything drives, others are refused until they "take" it. Returns "" or why
-    /// it is refused.
+    /// as if that end had sent it), "flash" with "board" and "file" (a path on this machine), "interrupts"
+    /// with "board" and "count" (they are counted or not), "look" with "board" and "items" (what to read, as
+    /// typed, at most kMostItems), "end", "take". The first page that asks for anything drives, others are
+    /// refused until they "take" it. Returns "" or why it is refused.
     std::string request(const std::string& text);
 
     /// JSON: time_s, playing, speed, over, why, driver, epoch (rises when what was recorded changes: the run
@@ -60,12 +60,12 @@ class Driver {
         bool refused = false;
     };
     struct Work {
-        enum class Kind { Step, Act, Until, Back, Fault, Type, Look };
+        enum class Kind { Step, Act, Until, Back, Fault, Type, Flash, Ask, Look };
         Kind kind = Kind::Step;
         int ms = 0;           // of a step
         double to_s = 0.0;    // of going back
-        std::string text{};   // command, fault, or condition
-        std::string board{};  // of a condition
+        std::string text{};   // command, fault, condition or file
+        std::string board{};  // of a condition; to be flashed
     };
     void run() noexcept;
     bool serve();

@@ -17,8 +17,25 @@ export class BoardPart {
     this.where = Object.assign(document.createElement('div'), { id: 'where' });
     this.values = Object.assign(document.createElement('table'), { id: 'watches' });
     this.code = Object.assign(document.createElement('pre'), { id: 'code' });
-    this.input.hidden = true;
-    element.append(this.chooser, this.where, this.input, this.values, this.code);
+    this.image = Object.assign(document.createElement('input'), { id: 'flash-file', placeholder: 'path of an image: build/robot.elf', size: 26 });
+    this.image.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') this.flash();
+      event.stopPropagation();
+    });
+    this.burn = Object.assign(document.createElement('button'), { id: 'flash', textContent: 'flash',
+      title: 'write this image into the board; its chip is reset, RAM stays' });
+    this.burn.addEventListener('click', () => this.flash());
+    this.stack = Object.assign(document.createElement('pre'), { id: 'stack' });
+    this.interrupts = Object.assign(document.createElement('table'), { id: 'interrupts' });
+    this.counting = Object.assign(document.createElement('input'), { id: 'count-interrupts', type: 'checkbox' });
+    this.counting.addEventListener('change', () => this.ask({ do: 'interrupts', board: this.board, count: this.counting.checked }));
+    this.counter = document.createElement('label');
+    this.counter.title = 'counts what the program takes from now on; the run is slower meanwhile';
+    this.counter.append(this.counting, ' interrupts');
+    this.flasher = document.createElement('div');
+    this.flasher.append(this.image, this.burn);
+    this.flasher.hidden = this.input.hidden = this.counter.hidden = true;
+    element.append(this.chooser, this.where, this.input, this.values, this.code, this.stack, this.counter, this.interrupts, this.flasher);
     element.hidden = boards.length === 0;
   }
   get board() { return this.chooser.value; }
@@ -28,16 +45,20 @@ export class BoardPart {
     this.input.value = '';
     this.look();
   }
+  flash() {
+    const file = this.image.value.trim();
+    if (file) this.ask({ do: 'flash', board: this.board, file });
+  }
   look() {
     this.before = new Map();
     this.drawn = '';
-    this.input.hidden = this.board === '';
-    for (const part of [this.where, this.values, this.code]) part.replaceChildren();
+    this.input.hidden = this.flasher.hidden = this.counter.hidden = this.board === '';
+    for (const part of [this.where, this.values, this.code, this.stack, this.interrupts]) part.replaceChildren();
     return this.ask({ do: 'look', board: this.board, items: this.items });
   }
   draw(look) {
     if (!look || look.board !== this.board || look.values.length !== this.items.length) return;
-    const key = `${look.time_s} ${this.items.length}`;
+    const key = `${look.time_s} ${this.items.length} ${look.where.interrupts !== undefined}`;
     if (key === this.drawn) return;
     this.drawn = key;
     const { where } = look;
@@ -61,6 +82,15 @@ export class BoardPart {
       }
       return line;
     }));
+    this.counting.checked = where.interrupts !== undefined;
+    this.interrupts.replaceChildren(...(where.interrupts || []).map((one) => {
+      const line = document.createElement('tr');
+      for (const cell of [one.name, one.count, `${one.per_s.toPrecision(4)} /s`])
+        line.append(Object.assign(document.createElement('td'), { textContent: cell }));
+      return line;
+    }));
+    this.stack.replaceChildren(...where.stack.map((one) => Object.assign(document.createElement('div'), {
+      textContent: `${hex(one.address, 4)}  ${hex(one.value, 4)}${one.place ? `  ${one.place}` : ''}` })));
     this.code.replaceChildren(...where.instructions.map((one) => Object.assign(document.createElement('div'), {
       className: one.pc === where.pc ? 'here' : '', textContent: `${hex(one.pc, 4)}  ${one.text}${one.place ? `   ${one.place}:` : ''}` })));
   }

@@ -297,6 +297,9 @@ class Run:
     async def type(self, link: str, sender: str, text: str | bytes, baud: float | None = None) -> None:
         await self._do(self._session.type(link, sender, text, baud))
 
+    async def flash(self, node: str, file: str | os.PathLike[str]) -> None:
+        await self._do(self._session.flash(node, pathlib.Path(file).absolute()))
+
     # Snapshots and faults.
     async def save(self, file: str | os.PathLike[str]) -> pathlib.Path:
         return await self._do(self._session.save(pathlib.Path(file).absolute()))

@@ -284,6 +284,13 @@ class Run:
         RequestError: no such line or end, more than 4096 bytes, a run with lines to the outside."""
         self._do(self._session.type(link, sender, text, baud))
 
+    def flash(self, node: str, file: str | os.PathLike[str]) -> None:
+        """Writes a firmware image into a board's chip, as a programmer at its connector would: memories are erased and
+        written in no time, RAM stays, the chip is reset. What is read shows it from the next step on; events.toml
+        repeats it, from a copy of the image. RequestError: no such board or file, no image, one for another chip, a
+        run with lines to the outside; nothing was done then."""
+        self._do(self._session.flash(node, pathlib.Path(file).absolute()))
+
     # Snapshots and faults.
     def save(self, file: str | os.PathLike[str]) -> pathlib.Path:
         """The whole run as it is, for from_snapshot(). RequestError: the file cannot be written."""

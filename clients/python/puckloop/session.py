@@ -105,6 +105,10 @@ class Session:
         yield "type", {"link": link, "from": sender, "baud": baud, **what}
         self._goes_on()
 
+    def flash(self, node: str, file: pathlib.Path) -> Operation[None]:
+        yield "flash", {"node": node, "file": str(file)}
+        self._goes_on()
+
     def log(self, node: str) -> str:
         file = self.results / f"{node}.log"
         return file.read_text(errors="replace") if file.is_file() else ""

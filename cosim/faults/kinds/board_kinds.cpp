@@ -1,8 +1,12 @@
 // What can happen to boards and their chips; emu/chip/faults carries it out.
 
+#include "base/error.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "cosim/faults/profile.h"
 
+#include <fmt/format.h>
+
+#include <string>
 #include <utility>
 
 namespace puckloop::cosim {
@@ -12,6 +16,7 @@ namespace {
 constexpr double kLongestOfBoard = 1e6, kMostArrivals = 1e9, kMostPpm = 90'000.0,
                  kHighestChipAddress = 0xFFFFFF;
 constexpr double kHighestBit = 23, kMostVolts = 10;
+constexpr std::size_t kDigitsOfHash = 64;
 // Inputs of the converters. The range-and-bearing board's peak detectors are at AN20 to AN31.
 constexpr double kChannels = 16, kRabChannels = 32;
 
@@ -49,6 +54,13 @@ std::vector<KindInfo> of_chip(PlaceKind place) {
                      {.key = "symbol", .unit = Unit::Text},
                      {.key = "address", .unit = Unit::Integer, .low = 0, .high = kHighestChipAddress},
                      {.key = "bit", .unit = Unit::Integer, .low = 0, .high = kHighestBit}})},
+        {"flash",
+         place,
+         Style::Times,
+         FaultKind::None,
+         {{.key = "image", .unit = Unit::Text, .required = true},
+          {.key = "sha256", .unit = Unit::Text},
+          {.key = "source", .unit = Unit::Text}}},
         {"clock",
          place,
          Style::Hold,
@@ -118,6 +130,14 @@ std::vector<KindInfo> board_kinds() {
 
 void check_board_fault(const FaultSpec& spec, const KindInfo& kind) {
     if (kind.name == "battery") voltage_profile(spec.parameters.text("profile"), kMostVolts);
+    if (kind.name != "flash") return;
+    if (spec.parameters.text("image").empty())
+        throw InputError("", "image", "no file is named", "a firmware image");
+    const std::string hash = spec.parameters.text("sha256");
+    if (!hash.empty() &&
+        (hash.size() != kDigitsOfHash || hash.find_first_not_of("0123456789abcdef") != hash.npos))
+        throw InputError("", "sha256", fmt::format("'{}' is no SHA-256", hash),
+                         "64 hexadecimal digits, lower-case");
 }
 
 }  // namespace puckloop::cosim

@@ -15,8 +15,41 @@ const image::CodePlaces& Chip::places() const {
     return parts_->places;
 }
 
-void Chip::load(const image::AvrImage& image) {
+void Chip::name_places(const image::AvrImage& image) {
     parts_->places = image::CodePlaces(image.symbols, image.file, image.sha256);
+}
+
+void Chip::program(const image::AvrImage& image) {
+    constexpr std::uint16_t kErased = 0xFFFF;
+    constexpr std::uint8_t kErasedByte = 0xFF;
+    Parts& p = *parts_;
+    name_places(image);
+    std::vector<std::uint16_t> words(p.device.flash_words, kErased);
+    const std::uint32_t boot_start = p.device.flash_words - p.fuses.boot_words();
+    bool loads_boot = false;
+    for (const image::ByteSegment& segment : image.flash)
+        for (std::size_t i = 0; i < segment.bytes.size(); ++i) {
+            const auto address = static_cast<std::uint32_t>(segment.address + i);
+            std::uint16_t& word = words[address / 2];
+            const std::uint16_t byte = segment.bytes[i];
+            word = static_cast<std::uint16_t>(address & 1 ? (word & 0x00FF) | byte << 8
+                                                          : (word & 0xFF00) | byte);
+            loads_boot |= address / 2 >= boot_start;
+        }
+    const std::uint32_t end = p.fuses.boot_reset() && !loads_boot ? boot_start : p.device.flash_words;
+    for (std::uint32_t word = 0; word < end; ++word)
+        p.core.set_program(word, words[word]);
+    if (!p.fuses.keep_eeprom())
+        for (std::size_t cell = 0; cell < p.eeprom.bytes().size(); ++cell)
+            p.eeprom.poke(cell, kErasedByte);
+    for (const image::ByteSegment& segment : image.eeprom)
+        for (std::size_t i = 0; i < segment.bytes.size(); ++i)
+            p.eeprom.poke(segment.address + i, segment.bytes[i]);
+    p.fuses.lock = image.lock_bits.value_or(kErasedByte);
+}
+
+void Chip::load(const image::AvrImage& image) {
+    name_places(image);
     for (const image::ByteSegment& segment : image.flash)
         for (std::size_t i = 0; i < segment.bytes.size(); ++i) {
             const auto address = static_cast<std::uint32_t>(segment.address + i);

@@ -97,6 +97,13 @@ class Chip {
 
     /// Flash, EEPROM, fuses and lock bits of an image. The image was checked against the device.
     void load(const image::AvrImage& image);
+    /// What a programmer at the board's connector does: flash and lock bits are erased, the EEPROM unless
+    /// fuse EESAVE is programmed, and get what the image has; fuses stay. So does the boot section, where
+    /// reset leads to it and the image has nothing for it. RAM and registers stay; a reset is the caller's.
+    /// Between two run_until(). The image was checked against the device.
+    void program(const image::AvrImage& image);
+    /// places() are this image's from now on.
+    void name_places(const image::AvrImage& image);
     /// What its memories hold now, as an image that load() takes.
     image::AvrImage memory() const;
     std::vector<std::uint8_t>& eeprom();

@@ -1,10 +1,13 @@
 #include "emu/avr/chip/chip_faults.h"
 
 #include "emu/avr/core/core.h"
+#include "emu/avr/devices/device.h"
 #include "emu/avr/peripherals/eeprom.h"
+#include "emu/image/image_hash.h"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace puckloop::avr {
 
@@ -178,6 +181,21 @@ void ChipFaults::flip(const MemoryPlace& place, std::uint32_t mask) {
     if (!acts_on_write(name(place))) in.io.write(address, flipped, static_cast<std::uint8_t>(mask));
     if (const std::uint32_t left = (read(place) ^ flipped) & mask; left)
         in.io.raw(address) = static_cast<std::uint8_t>(in.io.raw(address) ^ left);
+}
+
+void ChipFaults::read_image(const std::string& file, const std::string& sha256) {
+    if (images_.contains(file)) return;
+    image::AvrImage image = image::load_avr_image(file, chip_.inside().device.image_part());
+    image::check_hash(file, image.sha256, sha256);
+    images_.emplace(file, std::move(image));
+}
+
+void ChipFaults::program(const std::string& file) {
+    chip_.program(images_.at(file));
+}
+
+void ChipFaults::name_places(const std::string& file) {
+    chip_.name_places(images_.at(file));
 }
 
 std::string_view ChipFaults::name(const MemoryPlace& place) const {

@@ -11,6 +11,10 @@
 
 #include "emu/avr/chip/chip.h"
 #include "emu/chip/faults/chip_access.h"
+#include "emu/image/avr_image.h"
+
+#include <map>
+#include <string>
 
 namespace puckloop::avr {
 
@@ -34,6 +38,9 @@ class ChipFaults : public chip::ChipAccess {
     std::uint32_t bits(const chip::MemoryPlace& place) const override;
     std::uint32_t read(const chip::MemoryPlace& place) const override;
     void flip(const chip::MemoryPlace& place, std::uint32_t mask) override;
+    void read_image(const std::string& file, const std::string& sha256) override;
+    void program(const std::string& file) override;
+    void name_places(const std::string& file) override;
     std::string_view name(const chip::MemoryPlace& place) const override;
 
     std::optional<int> vector(std::string_view source) const override;
@@ -45,6 +52,7 @@ class ChipFaults : public chip::ChipAccess {
 
     Chip& chip_;
     chip::InterruptTime when_;
+    std::map<std::string, image::AvrImage> images_;  ///< by file
 };
 
 }  // namespace puckloop::avr

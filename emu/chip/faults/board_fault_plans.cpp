@@ -17,10 +17,10 @@ using cosim::CarriedFault;
 using cosim::FaultSpec;
 
 /// In the order of BoardFaults::Kind.
-constexpr std::array<std::string_view, 16> kKinds{
-    "reset",        "hang",          "brown_out",      "flip",          "interrupt",   "clock",
-    "sag",          "battery",       "ambient_burst",  "phase_open",    "wheel_stall", "foreign_carrier",
-    "emitter_dead", "receiver_dead", "lost_interrupt", "late_interrupt"};
+constexpr std::array<std::string_view, 17> kKinds{
+    "reset",           "hang",         "brown_out",     "flip",           "interrupt",     "flash",
+    "clock",           "sag",          "battery",       "ambient_burst",  "phase_open",    "wheel_stall",
+    "foreign_carrier", "emitter_dead", "receiver_dead", "lost_interrupt", "late_interrupt"};
 
 [[noreturn]] void refuse(const FaultSpec& spec, const std::string& what, const std::string& expected) {
     throw InputError("", fmt::format("fault {} on {}", spec.name, spec.node), what, expected);
@@ -80,6 +80,8 @@ BoardFaults::Plan BoardFaults::plan_of(const CarriedFault& fault, const Symbols&
         plan.vector = *vector;
     }
     if (plan.kind == Kind::Flip) plan_flip(plan, fault, symbols);
+    if (plan.kind == Kind::Flash)
+        chip_.read_image(spec.parameters.text("image"), spec.parameters.text("sha256"));
     return plan;
 }
 

@@ -165,6 +165,13 @@ void BoardFaults::fire(std::size_t i, Time now) {
         what = spec.parameters.text("vector");
         if (!chip_.interrupt(plans_[i].vector)) return;  // nothing happened: no evidence
         break;
+    case Kind::Flash: {
+        const std::string file = spec.parameters.text("image");
+        what = file.substr(file.rfind('/') + 1);
+        chip_.program(file);
+        chip_.reset(FaultReset::External);
+        break;
+    }
     default:
         break;
     }
@@ -345,7 +352,19 @@ Time BoardFaults::interrupt_time(int vector, Time now) {
     return when;
 }
 
+/// By the image that was programmed last.
+void BoardFaults::name_places() const {
+    const CarriedFault* latest = nullptr;
+    for (std::size_t i = 0; i < plans_.size(); ++i) {
+        const cosim::Trigger& trigger = faults_[i].trigger;
+        if (plans_[i].kind != Kind::Flash || trigger.fired() == 0) continue;
+        if (latest == nullptr || trigger.begin() >= latest->trigger.begin()) latest = &faults_[i];
+    }
+    if (latest != nullptr) chip_.name_places(latest->spec.parameters.text("image"));
+}
+
 void BoardFaults::loaded(Time now, bool others) {
+    name_places();
     if (others) sags_ = drains_ = dazzles_ = shines_ = harms_motors_ = true;
     for (std::size_t i = 0; i < plans_.size(); ++i)
         plan_next(i, plans_[i].holds ? now + 1 : now);

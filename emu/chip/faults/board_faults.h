@@ -4,6 +4,7 @@
 //
 //   reset `cause`; hang `duration`; brown_out `duration`; flip `space` `symbol` `address` `bit`;
 //   interrupt `vector`                    at instants, or with `pc` and `nth` where the program arrives
+//   flash `image` `sha256`                at instants
 //   clock `ppm` `drift`; sag `volts`; battery `profile`  during the window
 //   phase_open `motor` `winding`; wheel_stall `motor`; foreign_carrier `receiver`
 //   ambient_burst `sensor` `strength`
@@ -98,6 +99,7 @@ class BoardFaults {
         BrownOut,
         Flip,
         Interrupt,
+        Flash,
         Clock,
         Sag,
         Battery,
@@ -110,6 +112,7 @@ class BoardFaults {
         LostInterrupt,
         LateInterrupt
     };
+    void name_places() const;
     static std::optional<Kind> kind_of(std::string_view name);
     struct Plan {
         Kind kind = Kind::Reset;

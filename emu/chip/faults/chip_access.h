@@ -68,6 +68,15 @@ class ChipAccess {
     virtual std::uint32_t read(const MemoryPlace& place) const = 0;
     /// Inverts the bits in `mask`. What a register controls follows.
     virtual void flip(const MemoryPlace& place, std::uint32_t mask) = 0;
+    /// Reads a firmware image that is to be programmed later, or named again after a state was loaded. Throws
+    /// InputError: unreadable, not for this chip, or with another SHA-256 than the one given (empty: any).
+    virtual void read_image(const std::string& file, const std::string& sha256) = 0;
+    /// Writes such an image as a programmer at the board's connector does, in no time: the memories are
+    /// erased before. RAM and registers stay as they are. Reports name places by it from now on.
+    virtual void program(const std::string& file) = 0;
+    /// What was programmed before a state was saved that was loaded now: reports name places by it.
+    virtual void name_places(const std::string& file) = 0;
+
     /// The name of a register's place, for reports; empty for another place.
     virtual std::string_view name(const MemoryPlace& place) const = 0;
 

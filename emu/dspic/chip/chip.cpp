@@ -14,7 +14,14 @@ using cosim::Time;
 
 namespace {
 constexpr int kUartLookaheadBits = 9;
+
+std::vector<ProgramWord> words_of(const image::Image& image) {
+    std::vector<ProgramWord> words;
+    for (const auto& [address, word] : image.all_words())
+        words.push_back({address, word});
+    return words;
 }
+}  // namespace
 
 void Chip::Parts::arrive(Time time) {
     now = std::max(now, time);
@@ -29,11 +36,17 @@ Chip::~Chip() = default;
 
 void Chip::load(const image::Image& image) {
     image::check_fits(image, image::find_device(parts_->device.name));
+    name_places(image);
+    parts_->core.load(words_of(image));
+}
+
+void Chip::program(const image::Image& image) {
+    name_places(image);
+    parts_->core.reprogram(words_of(image));
+}
+
+void Chip::name_places(const image::Image& image) {
     parts_->places = image::CodePlaces(image.symbols, image.file, image.sha256);
-    std::vector<ProgramWord> words;
-    for (const auto& [address, word] : image.all_words())
-        words.push_back({address, word});
-    parts_->core.load(words);
 }
 
 void Chip::load_word(std::uint32_t address, std::uint32_t word) {

@@ -126,6 +126,13 @@ class Chip {
     /// One program, configuration or EEPROM word at a program address (even).
     void load_word(std::uint32_t address, std::uint32_t word);
 
+    /// What a programmer at the board's connector does: all memories are erased and get the image's words, as
+    /// if the chip had been loaded with them first. RAM and registers stay; a reset is the caller's. Between
+    /// two run_until(). The image was checked against the device.
+    void program(const image::Image& image);
+    /// places() are this image's from now on.
+    void name_places(const image::Image& image);
+
     /// What would be left without supply, by program address: flash and EEPROM words that are not erased, and
     /// every configuration word. load_word() of all of them into a new chip makes the same memory.
     std::map<std::uint32_t, std::uint32_t> memory() const;

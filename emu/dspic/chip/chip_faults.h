@@ -3,6 +3,10 @@
 
 #include "emu/chip/faults/chip_access.h"
 #include "emu/dspic/chip/chip.h"
+#include "emu/image/image.h"
+
+#include <map>
+#include <string>
 
 namespace puckloop::dspic {
 
@@ -26,6 +30,9 @@ class ChipFaults : public chip::ChipAccess {
     std::uint32_t bits(const chip::MemoryPlace& place) const override;
     std::uint32_t read(const chip::MemoryPlace& place) const override;
     void flip(const chip::MemoryPlace& place, std::uint32_t mask) override;
+    void read_image(const std::string& file, const std::string& sha256) override;
+    void program(const std::string& file) override;
+    void name_places(const std::string& file) override;
     std::string_view name(const chip::MemoryPlace& place) const override;
 
     std::optional<int> vector(std::string_view source) const override;
@@ -38,6 +45,7 @@ class ChipFaults : public chip::ChipAccess {
 
     Chip& chip_;
     chip::InterruptTime when_;
+    std::map<std::string, image::Image> images_;  ///< by file
 };
 
 }  // namespace puckloop::dspic

@@ -12,9 +12,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
+#include <vector>
 
 namespace puckloop::dspic {
+
+namespace {
+
+/// Configuration words of a part that nobody has programmed: no watchdog by them.
+std::vector<std::uint32_t> erased_configuration(const DeviceInfo& info) {
+    std::vector<std::uint32_t> words(info.config_words, 0xFFFF);
+    constexpr std::size_t kFwdt30F = 1;
+    constexpr std::size_t kFwdt33F = 5;
+    if (!info.family_33f && words.size() > kFwdt30F) words[kFwdt30F] = 0x7FFF;
+    if (info.family_33f && words.size() > kFwdt33F) words[kFwdt33F] = 0xFF7F;
+    return words;
+}
+
+}  // namespace
 
 Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
                  InterruptController& controller)
@@ -36,11 +52,7 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
     ram = ram_store.data();
     ram_words = static_cast<std::uint16_t>(ram_store.size());
     eeprom.assign(info.eeprom_words, 0xFFFF);
-    config.assign(info.config_words, 0xFFFF);
-    constexpr std::size_t kFwdt30F = 1;
-    constexpr std::size_t kFwdt33F = 5;
-    if (!info.family_33f && config.size() > kFwdt30F) config[kFwdt30F] = 0x7FFF;
-    if (info.family_33f && config.size() > kFwdt33F) config[kFwdt33F] = 0xFF7F;
+    config = erased_configuration(info);
     unit_id.assign(info.unit_id_words, 0xFFFFFF);
     hook_registers(*this);
     hook_power(*this);
@@ -73,6 +85,28 @@ void Core::load(std::span<const ProgramWord> words) {
                                          machine_->device.flash_end));
     if (many) renew_code(*machine_);
 }
+void Core::reprogram(std::span<const ProgramWord> words) {
+    constexpr std::uint32_t kWordMask = 0xFFFFFF, kErasedFlash = 0xFFFFFF, kErasedEeprom = 0xFFFF;
+    Machine& m = *machine_;
+    const DeviceInfo& device = m.device;
+    std::map<std::uint32_t, std::uint32_t> wanted;
+    for (const ProgramWord& word : words)
+        wanted[word.address & ~1u] = word.word & kWordMask;
+    const auto write = [&](std::uint32_t start, std::size_t count, auto erased) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto address = start + 2 * static_cast<std::uint32_t>(i);
+            const auto found = wanted.find(address);
+            const std::uint32_t word = found == wanted.end() ? erased(i) : found->second;
+            if (read_program(m, address) != word) write_program(m, address, word);
+        }
+    };
+    const std::vector<std::uint32_t> configuration = erased_configuration(device);
+    write(0, device.flash_end / 2, [](std::size_t) { return kErasedFlash; });
+    write(device.eeprom_start, m.eeprom.size(), [](std::size_t) { return kErasedEeprom; });
+    write(device.config_start, m.config.size(), [&](std::size_t i) { return configuration[i]; });
+    write(device.unit_id_start, m.unit_id.size(), [](std::size_t) { return kErasedFlash; });
+}
+
 std::uint32_t Core::program(std::uint32_t address) const {
     return read_program(*machine_, address);
 }

@@ -43,6 +43,9 @@ class Core {
     // Program space.
     /// Throws InputError naming the address if a word lies where the device has no memory.
     void load(std::span<const ProgramWord> words);
+    /// Erases every memory, then writes these words; those where the device has no memory are left out.
+    /// Allowed while a mark is set, and between two run() only.
+    void reprogram(std::span<const ProgramWord> words);
     /// 24-bit word at an even address; unimplemented memory reads 0.
     std::uint32_t program(std::uint32_t address) const;
     /// False if the device has no memory there.

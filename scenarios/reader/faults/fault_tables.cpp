@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "cosim/faults/flash.h"
 #include "cosim/i2c/i2c_fault.h"
 #include "scenarios/reader/faults/fault_places.h"
 #include "scenarios/reader/faults/fault_when.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <numbers>
 #include <vector>
 
@@ -23,6 +25,8 @@ using cosim::ParameterInfo;
 using cosim::Unit;
 
 namespace {
+
+constexpr std::string_view kCommandLine = "--fault";
 
 std::string range_of(const ParameterInfo& parameter) {
     if (parameter.unit == Unit::Integer)
@@ -165,6 +169,18 @@ const KindInfo& find_kind(Reader& reader, const FaultPlace& place) {
                 "one of " + cosim::kinds_of(place.kind) + did_you_mean(name, known));
 }
 
+/// Of a fault that flashes an image: beside the file that the fault is in, on the command line in the present
+/// folder. A client's events.toml and the copies in `flashed` may be elsewhere by now, together.
+std::string found_image(const Reader& reader, const std::string& named) {
+    namespace fs = std::filesystem;
+    const bool in_file = !reader.file().starts_with(kCommandLine);
+    std::error_code none;
+    const fs::path folder = in_file ? fs::absolute(reader.folder(), none) : fs::current_path(none);
+    const fs::path file = (folder / named).lexically_normal(),
+                   copy = folder / cosim::kFlashedFolder / file.filename();
+    return in_file && !fs::exists(file, none) && fs::exists(copy, none) ? copy : file;
+}
+
 FaultSpec read_fault(Reader& reader, const Scenario& scenario) {
     const FaultPlace place = find_place(reader, scenario);
     const KindInfo& kind = find_kind(reader, place);
@@ -177,6 +193,9 @@ FaultSpec read_fault(Reader& reader, const Scenario& scenario) {
     read_match(reader, kind, fault);
     for (const ParameterInfo& parameter : kind.parameters)
         read_parameter(reader, parameter, fault);
+    if (const std::string image = fault.parameters.text("image");
+        kind.name == cosim::kFlashKind && !image.empty())
+        fault.set("image", found_image(reader, image));
     check_receiver(reader, place, fault);
     fault.name = reader.text("name", "");
     if (fault.name.find_first_of(",\n\"") != std::string::npos)
@@ -209,7 +228,7 @@ FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue
 void add_fault(std::string_view words, Scenario& scenario) {
     const TomlValue table = fault_table_of(words);
     scenario.faults.push_back(
-        read_fault(fmt::format("--fault \"{}\"", words), scenario.faults.size(), table, scenario));
+        read_fault(fmt::format("{} \"{}\"", kCommandLine, words), scenario.faults.size(), table, scenario));
 }
 
 }  // namespace puckloop::scenarios

@@ -83,7 +83,8 @@ TomlValue fault_table_of(std::string_view words) {
             refuse(words, fmt::format("'{}' is given twice", key));
         // A name is a text whatever it looks like.
         const bool is_text = key == "kind" || key == "name" || key == "link" || key == "node" ||
-                             key == "from" || key == "match" || key == "data";
+                             key == "from" || key == "match" || key == "data" || key == "image" ||
+                             key == "sha256" || key == "source";
         table.emplace_back(key, key == "bytes" ? list_of(text)
                                 : is_text      ? TomlValue{std::string(text)}
                                                : value_of(text));

@@ -19,7 +19,7 @@ ordered_json file_schema() {
     return {{"type", "object"},
             {"properties",
              {{"node", of("string", "that uses it")},
-              {"role", {{"enum", {"firmware", "program"}}}},
+              {"role", {{"enum", {"firmware", "program", "flashed"}}}},
               {"file", of("string", "its path")},
               {"sha256", or_null("string", "of its bytes; null: it could not be read")}}},
             {"required", {"node", "role", "file", "sha256"}}};

@@ -144,8 +144,10 @@ class Runs:
 
     @staticmethod
     def check_faults(faults: Sequence[str]) -> Sequence[str]:
-        """The faults. Refused: one could be taken for an option."""
+        """The faults. Refused: one could be taken for an option, or names a file."""
         for fault in faults:
+            if re.match(r"\s*(kind=)?\W*flash\b", fault) or "image" in fault:
+                raise Refused("an image is flashed by the tool flash, which looks where it is")
             if not re.match(r"\w", fault):
                 raise Refused(f"'{fault}' is no fault such as 'drop link=robot0.uart begin=2s count=1'")
         return faults

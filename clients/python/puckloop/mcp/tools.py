@@ -90,6 +90,13 @@ class Toolbox:
             Tool("inject_fault", "Goes on with a fault that begins now or later; a refused one leaves the run alone.",
                  object_of({"run": RUN, "fault": text("such as 'drop link=robot0.uart begin=2s count=1'")}, "run",
                            "fault"), self._fault, True),
+            Tool("type", "Types into a serial line from now on, as if one of its ends had sent it.",
+                 object_of({"run": RUN, "link": text("such as robot0.uart1"), "from": text("the end that sends"),
+                            "text": text("UTF-8"), "data": text("bytes, hexadecimal")}, "run", "link", "from"),
+                 self._type, True),
+            Tool("flash", "Writes another firmware image into a board and resets its chip; RAM stays.",
+                 object_of({"run": RUN, "board": text("such as robot0.pic"), "image": text("file of the user's folders")},
+                           "run", "board", "image"), self._flash, True),
             Tool("save_snapshot", "Saves the whole run as it is; the run goes on.",
                  object_of({"run": RUN, "file": text("a name that ends with .snapshot")}, "run", "file"), self._save,
                  True),
@@ -273,6 +280,28 @@ class Toolbox:
             kept.drain()
             kept.run.fault(fault)
             return {"time_s": kept.run.time_s, "faults": kept.run.faults}
+
+    def _type(self, it: Arguments, _: Call) -> Result:
+        kept = self._runs.named(it["run"])
+        if ("text" in it) == ("data" in it):
+            raise Refused("one of 'text' and 'data' is typed")
+        try:
+            typed: str | bytes = it["text"] if "text" in it else bytes.fromhex(it["data"])
+        except ValueError:
+            raise Refused(f"{it['data']!r} is not hexadecimal") from None
+        with kept.turn:
+            kept.drain()
+            kept.run.type(it["link"], it["from"], typed)
+            return {"time_s": kept.run.time_s}
+
+    def _flash(self, it: Arguments, _: Call) -> Result:
+        image, kept = self._folders.image(it["image"]), self._runs.named(it["run"])
+        if image == "own":
+            raise Refused("a file is flashed, not 'own'")
+        with kept.turn:
+            kept.drain()
+            kept.run.flash(it["board"], image)
+            return {"time_s": kept.run.time_s, "flashed": "from the next step on"}
 
     def _back(self, it: Arguments, _: Call) -> Result:
         kept = self._runs.named(it["run"])
