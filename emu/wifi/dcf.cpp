@@ -81,6 +81,7 @@ void Dcf::put_on_air(Transmission transmission) {
     ++sender.counts.frames;
     sender.counts.air += transmission.end - transmission.start;
     const Transmission& sent = medium_.add(std::move(transmission));
+    user_.began(sent, sent.acknowledges ? nullptr : &sender.queue.front());
     for (std::size_t s = 0; s < stations_.size(); ++s) {
         if (s == sent.station)
             stations_[s].busy_until = std::max(stations_[s].busy_until, sent.end);

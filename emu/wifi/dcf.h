@@ -35,6 +35,8 @@ struct DcfCounts {
 class DcfUser {
   public:
     virtual ~DcfUser() = default;
+    /// A frame begins; `frame` is null for an acknowledgement.
+    virtual void began(const Transmission& sent, const Frame* frame) = 0;
     /// A frame that `station` read for the first time.
     virtual void received(std::size_t station, const Frame& frame, const Transmission& last) = 0;
     /// What became of a frame at one that it was meant for.

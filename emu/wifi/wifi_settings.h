@@ -24,6 +24,7 @@ struct WifiSettings {
     std::int64_t attempts = 7;
     std::int64_t shortest_window = 0;
     std::int64_t longest_window = 1023;
+    bool capture = false;
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
@@ -67,7 +68,8 @@ struct WifiSettings {
                 .within(0, 1023),
             field("longest_window", &S::longest_window, "last contention window, after doubling [8]")
                 .in("slots")
-                .within(1, 65535));
+                .within(1, 65535),
+            field("capture", &S::capture, "frames go to wifi.pcapng, with radiotap headers"));
     }
 };
 static_assert(lists_all_fields<WifiSettings>);

@@ -14,6 +14,26 @@
 static struct Packet packet;
 static struct Line incoming;
 static u8 own_pin[PIN];
+static struct NetworkPacket kept; /* that came while the robot was sending */
+static u8 has_kept;
+
+/* A plain byte: another robot's, by a link that it made. */
+static void keep(u8 byte) {
+    if (packet_take(&incoming, byte, &kept)) has_kept = 1;
+}
+
+/* As module_await(), but what comes by a link meanwhile is kept. */
+static u8 await(u8 type, u8 opcode, u16 ticks) {
+    const u16 begin = clock_ticks();
+    u8 byte;
+    while ((u16)(clock_ticks() - begin) < ticks) {
+        const u8 got = module_poll(&packet, &byte);
+        if (got == 1 && packet.type == type && packet.opcode == opcode) return 1;
+        if (got == 2) keep(byte);
+        if (got == 0) IDLE();
+    }
+    return 0;
+}
 
 static u16 number_of(const u8* digits) {
     u16 number = 0;
@@ -34,14 +54,14 @@ static void write_pin(const u8* pin) {
     for (i = 0; i < PIN; ++i)
         data[1 + i] = pin[i];
     module_request(WRITE_PIN, data, sizeof data);
-    module_await(CONFIRM, WRITE_PIN, &packet, SECONDS(1));
+    await(CONFIRM, WRITE_PIN, SECONDS(1));
 }
 
 void radio_start(void) {
     u8 i;
     serial_start();
     module_request(READ_PIN, own_pin, 0);
-    module_await(CONFIRM, READ_PIN, &packet, SECONDS(1));
+    await(CONFIRM, READ_PIN, SECONDS(1));
     for (i = 0; i < PIN; ++i)
         own_pin[i] = packet.data[2 + i];
 }
@@ -63,6 +83,7 @@ static u16 find(u8 addresses[][ADDRESS]) {
             ++found;
         }
         if (got == 1 && packet.type == CONFIRM && packet.opcode == INQUIRY) break;
+        if (got == 2) keep(plain);
         if (got == 0) IDLE();
     }
     return found;
@@ -72,7 +93,7 @@ static u16 find(u8 addresses[][ADDRESS]) {
 static u8 ask_name(const u8* address, u8* digits) {
     u8 i;
     module_request(REMOTE_NAME, address, ADDRESS);
-    if (!module_await(CONFIRM, REMOTE_NAME, &packet, SECONDS(20)) || packet.data[0] != 0 ||
+    if (!await(CONFIRM, REMOTE_NAME, SECONDS(20)) || packet.data[0] != 0 ||
         packet.data[7] < NAME_PREFIX + PIN)
         return 0;
     for (i = 0; i < PIN; ++i) {
@@ -92,20 +113,20 @@ static u8 link_with(const u8* address, const u8* pin) {
     for (i = 0; i < ADDRESS; ++i)
         wanted[1 + i] = address[i];
     module_request(ESTABLISH_LINK, wanted, sizeof wanted);
-    linked = module_await(INDICATION, LINK_ESTABLISHED, &packet, SECONDS(60)) && packet.data[0] == 0;
+    linked = await(INDICATION, LINK_ESTABLISHED, SECONDS(60)) && packet.data[0] == 0;
     write_pin(own_pin);
     if (!linked) return 0;
     module_request(TRANSPARENT_MODE, &port, 1);
-    module_await(CONFIRM, TRANSPARENT_MODE, &packet, SECONDS(1));
+    await(CONFIRM, TRANSPARENT_MODE, SECONDS(1));
     return 1;
 }
 
 static void release(void) {
     const u8 port = 1;
     serial_break();
-    module_await(INDICATION, TRANSPARENT_MODE, &packet, SECONDS(1));
+    await(INDICATION, TRANSPARENT_MODE, SECONDS(1));
     module_request(RELEASE_LINK, &port, 1);
-    module_await(INDICATION, LINK_RELEASED, &packet, SECONDS(10));
+    await(INDICATION, LINK_RELEASED, SECONDS(10));
 }
 
 static void report_digits(const char* what, const u8* digits) {
@@ -128,7 +149,6 @@ u8 radio_send(u16 to, const u8* data, u8 length) {
     u8 reached = 0;
     u16 found;
     u16 i;
-    serial_forget();
     found = find(addresses);
     if (found == 0) report("nobody found\r\n");
     for (i = 0; i < found; ++i) {
@@ -151,6 +171,11 @@ u8 radio_send(u16 to, const u8* data, u8 length) {
 u8 radio_receive(struct NetworkPacket* received) {
     u8 byte;
     u8 got;
+    if (has_kept) {
+        has_kept = 0;
+        *received = kept;
+        return 1;
+    }
     while ((got = module_poll(&packet, &byte)) != 0)
         if (got == 2 && packet_take(&incoming, byte, received)) return 1;
     return 0;
