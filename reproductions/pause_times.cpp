@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -82,10 +83,11 @@ double growth_of(const std::vector<TeamPauses>& teams) {
     return square == 0 ? 0 : product / square;
 }
 
-std::string pause_table(const std::vector<TeamPauses>& teams) {
-    std::string text =
-        fmt::format("{:>6} {:>5} {:>8} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}\n", "robots", "runs",
-                    "packets", "lost", "5 %", "25 %", "median", "75 %", "95 %", "published");
+std::string pause_table(const PauseSeries& series) {
+    const std::vector<TeamPauses>& teams = series.teams;
+    std::string text = fmt::format("{}\n{:>6} {:>5} {:>8} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}\n",
+                                   series.forwarder, "robots", "runs", "packets", "lost", "5 %", "25 %",
+                                   "median", "75 %", "95 %", "published");
     std::size_t packets = 0, lost = 0;
     for (const TeamPauses& team : teams) {
         text += fmt::format("{:6} {:5} {:8} {:6} {:8.1f} {:8.1f} {:8.1f} {:8.1f} {:8.1f} {:10.0f}\n",
@@ -113,42 +115,65 @@ std::string pause_table(const std::vector<TeamPauses>& teams) {
     return text;
 }
 
-std::string pause_picture(const std::vector<TeamPauses>& teams, const std::string& caption) {
-    constexpr const char *kOurs = "#4878a8", *kDark = "#1d3f63", *kPublished = "#b06000";
-    constexpr double kHalf = 0.3, kWide = 720, kHigh = 400;
-    Chart chart("Pause time of teams that talk by WiFi", "robots in the team", "pause time, ms");
-    chart.caption(caption);
-    chart.level(0);
-    std::vector<double> at, quarter, three_quarters, published;
-    for (const TeamPauses& team : teams) {
-        const double x = team.robots;
+namespace {
+
+/// One forwarder's boxes, `shift` beside the team's size.
+void draw_boxes(Chart& chart, const PauseSeries& series, double shift, double half, const char* colour,
+                const char* dark) {
+    std::vector<double> at, quarter, three_quarters;
+    for (const TeamPauses& team : series.teams) {
+        const double x = team.robots + shift;
         at.push_back(x);
         quarter.push_back(team.quarter);
         three_quarters.push_back(team.three_quarters);
-        published.push_back(published_pause(team.robots));
-        chart.line({x, x}, {team.low, team.high}, kOurs, "");
+        chart.line({x, x}, {team.low, team.high}, colour, "");
     }
-    chart.bars(at, kHalf, quarter, three_quarters, kOurs);
+    chart.bars(at, half, quarter, three_quarters, colour);
     bool first = true;
-    for (const TeamPauses& team : teams) {
-        const double x = team.robots;
-        chart.line({x - kHalf, x + kHalf}, {team.median, team.median}, kDark,
-                   first ? "median; box: quartiles, whiskers: 5 and 95 %" : "");
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        chart.line({at[i] - half, at[i] + half}, {series.teams[i].median, series.teams[i].median}, dark,
+                   first ? series.forwarder : std::string());
         first = false;
     }
+}
+
+}  // namespace
+
+std::string pause_picture(const std::vector<PauseSeries>& series, const std::string& caption) {
+    constexpr const char* kPublished = "#b06000";
+    constexpr std::array<std::pair<const char*, const char*>, 2> kColours{
+        {{"#8fb4d8", "#1d3f63"}, {"#9cc99c", "#1f5a1f"}}};
+    constexpr double kWide = 760, kHigh = 420, kBoxes = 0.7;  // of the room between two sizes
+    Chart chart("Pause time of teams that talk by WiFi", "robots in the team", "pause time, ms");
+    chart.caption(caption);
+    chart.level(0);
+    const auto count = static_cast<double>(series.size());
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        const auto& [colour, dark] = kColours[i % kColours.size()];
+        const double shift = kBoxes * ((static_cast<double>(i) + 0.5) / count - 0.5);
+        draw_boxes(chart, series[i], shift, kBoxes / count / 2.4, colour, dark);
+    }
+    std::vector<double> at, published;
+    for (const PauseSeries& one : series)
+        for (const TeamPauses& team : one.teams)
+            if (at.empty() || team.robots > at.back()) {
+                at.push_back(team.robots);
+                published.push_back(published_pause(team.robots));
+            }
     chart.line(at, published, kPublished, "published medians", true);
     chart.dots(at, published, kPublished);
     return chart.svg(kWide, kHigh);
 }
 
 std::string pauses_csv_head() {
-    return "robots,run,from,to,begun_s,pause_ms,uart_out_ms,to_manager_ms,radio_ms,uart_in_ms\n";
+    return "forwarder,robots,run,from,to,begun_s,pause_ms,uart_out_ms,to_manager_ms,radio_ms,uart_in_ms\n";
 }
 
-std::string pauses_csv(int robots, int run, const std::vector<Pause>& pauses) {
+std::string pauses_csv(const std::string& forwarder, int robots, int run, const std::vector<Pause>& pauses) {
     std::string rows;
     for (const Pause& one : pauses) {
-        rows += fmt::format("{},{},{},{},{:.6f},", robots, run, one.from + 1, one.to + 1, one.begun);
+        rows += fmt::format("{},{},{},{},{},{:.6f},", forwarder, robots, run, one.from + 1, one.to + 1,
+                            one.begun);
         if (one.pause < 0)
             rows += "lost,,,,\n";
         else

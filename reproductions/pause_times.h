@@ -64,12 +64,18 @@ double published_pause(int robots);
 /// ms that each further robot adds, by least squares over the medians; 0 with one size.
 double growth_of(const std::vector<TeamPauses>& teams);
 
+/// Teams of all sizes with one forwarder.
+struct PauseSeries {
+    std::string forwarder;  ///< its name
+    std::vector<TeamPauses> teams{};
+};
+
 /// One line per team size, beside the published medians, and what the parts are.
-std::string pause_table(const std::vector<TeamPauses>& teams);
+std::string pause_table(const PauseSeries& series);
 /// Boxes (quartiles) with whiskers (5 and 95 %) beside the published medians, as SVG.
-std::string pause_picture(const std::vector<TeamPauses>& teams, const std::string& caption);
+std::string pause_picture(const std::vector<PauseSeries>& series, const std::string& caption);
 /// Heads of the columns, and a line for each packet.
 std::string pauses_csv_head();
-std::string pauses_csv(int robots, int run, const std::vector<Pause>& pauses);
+std::string pauses_csv(const std::string& forwarder, int robots, int run, const std::vector<Pause>& pauses);
 
 }  // namespace puckloop::tools

@@ -85,7 +85,7 @@ TEST_CASE("a message to all is followed through the trace to each robot", "[paus
     CHECK(pauses[1].pause < 0);
     CHECK(pauses_of(team.messages(), 5.001, 6).empty());
     CHECK(pauses_of(team.messages(), 4, 5).empty());
-    CHECK(pauses_csv(3, 0, pauses).find("3,0,2,3,5.000000,lost,") != std::string::npos);
+    CHECK(pauses_csv("f", 3, 0, pauses).find("f,3,0,2,3,5.000000,lost,") != std::string::npos);
 }
 
 TEST_CASE("a team's pauses are counted, and their growth is the slope of medians", "[pauses]") {
@@ -109,11 +109,11 @@ TEST_CASE("a team's pauses are counted, and their growth is the slope of medians
     more.median += 20;
     CHECK(growth_of({team, more}) == Approx(2.0));
     CHECK(growth_of({team}) == 0);
-    const std::string table = pause_table({team, more});
+    const std::string table = pause_table({"f", {team, more}});
     CHECK(table.find("2 of 202 packets lost (published: 0 of 2000)") != std::string::npos);
     CHECK(table.find("each further robot adds 2.00 ms to the median (published: 1.25 ms)") !=
           std::string::npos);
-    CHECK(pause_picture({team, more}, "words").ends_with("</svg>\n"));
+    CHECK(pause_picture({{"f", {team, more}}, {"g", {team}}}, "words").ends_with("</svg>\n"));
     CHECK(summary_of(3, 1, {}).median == 0);
 }
 

@@ -48,6 +48,17 @@ std::vector<int> team_sizes(const NetworkOptions& options) {
     return sizes;
 }
 
+/// Words of the programs between UART2 and TCP.
+std::vector<std::vector<std::string>> forwarders_of(const NetworkOptions& options) {
+    if (options.forwarder.empty())
+        return {{"puckloop-forward"}, {shipped_file("scenarios/programs/plain_forward.py").string()}};
+    std::vector<std::string> words = options.forwarder;
+    // A program by its path is found from the run's folder as well.
+    if (words.front().find('/') != std::string::npos)
+        words.front() = std::filesystem::absolute(words.front()).string();
+    return {words};
+}
+
 TeamSpec team_of(const NetworkOptions& options) {
     TeamSpec spec;
     spec.folder = options.out / "run";
@@ -55,41 +66,49 @@ TeamSpec team_of(const NetworkOptions& options) {
     if (spec.firmware.empty())
         throw InputError("", "bench network", "there is no network.hex beside this program",
                          "the firmware folder, or --firmware IMAGE");
-    if (!options.forwarder.empty()) spec.forwarder = options.forwarder;
-    // A program by its path is found from the run's folder as well.
-    if (spec.forwarder.front().find('/') != std::string::npos)
-        spec.forwarder.front() = std::filesystem::absolute(spec.forwarder.front()).string();
     spec.standard = options.standard;
     spec.seconds = options.seconds;
     return spec;
 }
 
+/// All runs of a size; what they gave is added to `csv`.
+TeamPauses measure_team(const NetworkOptions& options, TeamSpec spec, const std::string& name,
+                        std::string& csv) {
+    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    std::vector<Pause> pauses;
+    for (int run = 0; run < options.runs; ++run) {
+        if (terminal)
+            fmt::print(stderr, "\r{}, {} robots, run {} of {} ", name, spec.robots, run + 1, options.runs);
+        spec.seed = options.seed * 1000 + static_cast<std::uint64_t>(run);
+        const std::vector<Pause> found = run_team(spec);
+        pauses.insert(pauses.end(), found.begin(), found.end());
+        csv += pauses_csv(name, spec.robots, run, found);
+    }
+    return summary_of(spec.robots, options.runs, pauses);
+}
+
 void run_network(const NetworkOptions& options, int& status) {
     TeamSpec spec = team_of(options);
     claim_folder(options.out, ".puckloop-bench", {"pauses.csv", "pauses.svg", "run"});
-    const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const auto begin = std::chrono::steady_clock::now();
     std::string csv = pauses_csv_head();
-    std::vector<TeamPauses> teams;
-    for (const int robots : team_sizes(options)) {
-        std::vector<Pause> pauses;
-        for (int run = 0; run < options.runs; ++run) {
-            if (terminal) fmt::print(stderr, "\r{} robots, run {} of {} ", robots, run + 1, options.runs);
+    std::vector<PauseSeries> all;
+    for (const std::vector<std::string>& forwarder : forwarders_of(options)) {
+        spec.forwarder = forwarder;
+        PauseSeries series{std::filesystem::path(forwarder.front()).filename().string()};
+        for (const int robots : team_sizes(options)) {
             spec.robots = robots;
-            spec.seed = options.seed * 1000 + static_cast<std::uint64_t>(run);
-            const std::vector<Pause> found = run_team(spec);
-            pauses.insert(pauses.end(), found.begin(), found.end());
-            csv += pauses_csv(robots, run, found);
+            series.teams.push_back(measure_team(options, spec, series.forwarder, csv));
         }
-        teams.push_back(summary_of(robots, options.runs, pauses));
+        fmt::print("{}", pause_table(series));
+        all.push_back(std::move(series));
     }
-    const std::string forwarder = std::filesystem::path(spec.forwarder.front()).filename().string();
     write_file(options.out / "pauses.csv", csv);
     write_file(options.out / "pauses.svg",
-               pause_picture(teams, fmt::format("{}, 802.11{}, {} runs of {:g} s for each size", forwarder,
-                                                options.standard, options.runs, options.seconds)));
-    fmt::print("{}took {}; {}\n", pause_table(teams), seconds_since(begin),
-               (options.out / "pauses.svg").string());
+               pause_picture(all, fmt::format("802.11{}, {} runs of {:g} s for each size; boxes: quartiles, "
+                                              "whiskers: 5 and 95 %",
+                                              options.standard, options.runs, options.seconds)));
+    fmt::print("took {}; {}\n", seconds_since(begin), (options.out / "pauses.svg").string());
     status = 0;
 }
 
@@ -119,7 +138,7 @@ void declare_bench_network(Command& bench, int& status) {
     command
         ->add_option("--forwarder", options->forwarder,
                      "program between UART2 and TCP, a word of its command line each time; --server "
-                     "manager:7700 follows (default puckloop-forward)")
+                     "manager:7700 follows (default both: puckloop-forward, plain_forward.py)")
         ->allow_extra_args(false)
         ->type_name("WORD");
     command->add_option("--standard", options->standard, "of the radio: b or g (default g)")
