@@ -36,7 +36,7 @@ struct Pause {
     std::size_t from = 0, to = 0;
     double begun = 0;               ///< s of the run
     double pause = -1;              ///< negative: lost
-    std::array<double, 4> parts{};  ///< as kPauseParts; 0 where one could not be told from the next
+    std::array<double, 4> parts{};  ///< as kPauseParts; 0 where one is not known apart from the next
 };
 inline constexpr std::array<const char*, 4> kPauseParts{"main board to Linux board", "to the manager and on",
                                                         "by radio to the receiver",

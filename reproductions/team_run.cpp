@@ -1,4 +1,4 @@
-// A run of a team: its scenario, and what its trace says.
+// A run of a team: its scenario, and the messages in its trace.
 
 #include "reproductions/pause_times.h"
 

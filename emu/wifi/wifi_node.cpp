@@ -91,11 +91,12 @@ WifiNode::WifiNode(const WifiSpec& spec)
         any_wired_ = any_wired_ || wired;
         station_of_.push_back(wired ? kNobody : computer_of_.size());
         if (!wired) computer_of_.push_back(c);
+        if (spec.stations[c].pose >= 0) dcf_.medium().embody(station_of_[c]);
     }
     if (spec.access_point) computer_of_.push_back(kNobody);
     ports_.push_back({"world", cosim::PortKind::Signals});
-    if (!spec_.capture.empty())
-        capture_.emplace(spec_.capture, spec_.settings, macs_of(spec_),
+    if (!spec_.pcapng.empty())
+        capture_.emplace(spec_.pcapng, spec_.settings, macs_of(spec_),
                          spec_.access_point ? names_.size() - 1 : kEveryStation);
     if (spec_.csv.empty()) return;
     csv_ = new_file(spec_.csv);
@@ -294,6 +295,9 @@ std::string WifiNode::finish() {
         report[kAccessPoint] = to_json(counts);
         report[kAccessPoint]["queue_full"] = counts.queue_full;
     }
+    if (spec_.settings.bursts != 0)
+        report["interference"] = {{"bursts", dcf_.bursts().count},
+                                  {"air_s", cosim::to_seconds(dcf_.bursts().air)}};
     if (csv_ != nullptr) std::fflush(csv_);
     if (capture_) capture_->flush();
     const network::NetworkFaults& faults = computers_.faults();

@@ -55,7 +55,7 @@ struct WifiSpec {
     std::optional<Position> access_point{};
     std::vector<WifiStation> stations{};
     std::string csv{};
-    std::string capture{};
+    std::string pcapng{};
     std::vector<cosim::CarriedFault> faults{};
 
     template <class Visitor>
@@ -71,7 +71,7 @@ struct WifiSpec {
                      part(&S::settings), field("access_point", &S::access_point, "where it is; none: ad-hoc"),
                      field("stations", &S::stations, "the computers").required(),
                      field("csv", &S::csv, "what became of frames; empty: none"),
-                     field("capture", &S::capture, "frames as pcapng; empty: none"), unlisted(&S::faults));
+                     field("pcapng", &S::pcapng, "captured frames; empty: none"), unlisted(&S::faults));
     }
 };
 static_assert(lists_all_fields<WifiSpec>);
