@@ -15,8 +15,8 @@ namespace puckloop::cosim {
 
 namespace {
 
-constexpr std::size_t kChunk = 4UL << 20;
-constexpr std::size_t kChunksInMemory = 4;
+constexpr std::size_t kOctetChunk = 4UL << 20;
+constexpr std::size_t kOctetChunksInMemory = 4;
 
 /// Where strings are made one behind the other. They never move: what goes to the file keeps its place in the
 /// address space.
@@ -24,7 +24,7 @@ class OctetStore {
   public:
     void* room_for(std::size_t size) {
         size = (size + alignof(std::uint64_t) - 1) / alignof(std::uint64_t) * alignof(std::uint64_t);
-        if (chunks_.empty() || used_ + size > kChunk) add_chunk();
+        if (chunks_.empty() || used_ + size > kOctetChunk) add_chunk();
         void* room = chunks_.back() + used_;
         used_ += size;
         return room;
@@ -32,11 +32,12 @@ class OctetStore {
 
   private:
     void add_chunk() {
-        void* chunk = ::mmap(nullptr, kChunk, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        void* chunk =
+            ::mmap(nullptr, kOctetChunk, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (chunk == MAP_FAILED) throw std::bad_alloc();
         chunks_.push_back(static_cast<std::uint8_t*>(chunk));
         used_ = 0;
-        if (chunks_.size() <= kChunksInMemory) return;
+        if (chunks_.size() <= kOctetChunksInMemory) return;
         move_to_file(chunks_.front());
         chunks_.pop_front();
     }
@@ -45,14 +46,14 @@ class OctetStore {
     void move_to_file(std::uint8_t* chunk) {
         open_file();
         if (file_ < 0) return;
-        for (std::size_t written = 0; written < kChunk;) {
+        for (std::size_t written = 0; written < kOctetChunk;) {
             const ssize_t one =
-                ::pwrite(file_, chunk + written, kChunk - written, end_ + static_cast<off_t>(written));
+                ::pwrite(file_, chunk + written, kOctetChunk - written, end_ + static_cast<off_t>(written));
             if (one <= 0) return;  // no room on the disk
             written += static_cast<std::size_t>(one);
         }
-        if (::mmap(chunk, kChunk, PROT_READ, MAP_SHARED | MAP_FIXED, file_, end_) == MAP_FAILED) return;
-        end_ += static_cast<off_t>(kChunk);
+        if (::mmap(chunk, kOctetChunk, PROT_READ, MAP_SHARED | MAP_FIXED, file_, end_) == MAP_FAILED) return;
+        end_ += static_cast<off_t>(kOctetChunk);
     }
 
     /// A process that another one has made by fork() has a file of its own.
