@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFieldWidth = 2.0, kFieldDepth = 1.8;  // m
-constexpr double kFromWall = 0.15, kApart = 0.15;       // m, of robots at the beginning
+constexpr double kFieldWidth = 2.0, kFieldDepth = 1.8;   // m
+constexpr double kFromWall = 0.15, kRobotsApart = 0.15;  // m, of robots at the beginning
 constexpr const char* kManager = "manager";
 /// s: until forwarders are connected (the firmware's first message is later than 2 s), and what a receive
 /// call waits at most.
@@ -37,7 +37,7 @@ std::vector<StartPose> draw_poses(const TeamSpec& spec) {
                        (random.uniform() - 0.5) * (kFieldDepth - 2 * kFromWall), 0};
         bool free = true;
         for (const StartPose& other : poses)
-            free = free && std::hypot(pose.x - other.x, pose.y - other.y) >= kApart;
+            free = free && std::hypot(pose.x - other.x, pose.y - other.y) >= kRobotsApart;
         if (!free) continue;
         pose.heading = random.uniform() * 360;
         poses.push_back(pose);

@@ -10,9 +10,9 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr char kEnd = '\r';
+constexpr char kLineEnd = '\r';
 
-double seconds(cosim::Time time) {
+double in_seconds(cosim::Time time) {
     return cosim::to_seconds(time);
 }
 
@@ -55,8 +55,8 @@ void TeamTrace::add(const cosim::TraceRow& row) {
 void TeamTrace::from_board(std::size_t robot, char character, const cosim::TraceRow& row) {
     constexpr int kAll = -1, kAllByFourDigits = 9999;
     Line& line = up_[robot];
-    if (character != kEnd) {
-        if (line.text.empty()) line.begun = seconds(std::get<cosim::UartFrame>(row.payload).start);
+    if (character != kLineEnd) {
+        if (line.text.empty()) line.begun = in_seconds(std::get<cosim::UartFrame>(row.payload).start);
         line.text += character;
         return;
     }
@@ -64,19 +64,19 @@ void TeamTrace::from_board(std::size_t robot, char character, const cosim::Trace
     if (const int to = take_number(data); to == kAll || to == kAllByFourDigits) {
         known_[{robot, std::string(data)}] = messages_.size();
         messages_.push_back(
-            {robot, std::string(data), line.begun, seconds(row.time), std::vector<Arrival>(up_.size())});
+            {robot, std::string(data), line.begun, in_seconds(row.time), std::vector<Arrival>(up_.size())});
     }
     line = {};
 }
 
 void TeamTrace::to_board(std::size_t robot, char character, const cosim::TraceRow& row) {
     Line& line = down_[robot];
-    if (character != kEnd) {
+    if (character != kLineEnd) {
         line.text += character;
         return;
     }
     if (TeamMessage* message = find(line.text))
-        set_first(message->arrivals[robot].received, seconds(row.time));
+        set_first(message->arrivals[robot].received, in_seconds(row.time));
     line = {};
 }
 
@@ -98,10 +98,10 @@ void TeamTrace::packet(const cosim::Packet& packet, const cosim::TraceRow& row) 
     const std::size_t to = (read->to & 0xff) - 1;
     if (to >= up_.size()) return;
     std::string_view rest = segment->data;
-    for (std::size_t end; (end = rest.find(kEnd)) != std::string_view::npos; rest.remove_prefix(end + 1))
+    for (std::size_t end; (end = rest.find(kLineEnd)) != std::string_view::npos; rest.remove_prefix(end + 1))
         if (TeamMessage* message = find(rest.substr(0, end)))
             set_first(passed ? message->arrivals[to].passed : message->arrivals[to].arrived,
-                      seconds(row.time));
+                      in_seconds(row.time));
 }
 
 }  // namespace puckloop::tools
