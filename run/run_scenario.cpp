@@ -229,6 +229,8 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
         log.progress(now);
         if (progress) progress(now);
     };
+    std::optional<exec::PortRelay> relay;
+    if (!planned.joined.empty()) relay.emplace(planned.joined);
     // Before anything is started: a named pipe may have to wait for its reader.
     std::optional<LiveTrace> live;
     if (!request.live.empty()) live.emplace(request.live, options.interrupted);

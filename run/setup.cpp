@@ -17,6 +17,7 @@
 #include "run/nodes/cameras.h"
 #include "run/nodes/can_buses.h"
 #include "run/nodes/ircom_nodes.h"
+#include "run/nodes/joined_ports.h"
 #include "run/nodes/linux_nodes.h"
 #include "run/nodes/network_nodes.h"
 #include "run/nodes/plan_kit.h"
@@ -252,6 +253,7 @@ RunSetup set_up(const RunRequest& request) {
         setup.scenario_sha256 = sha256_of_file(request.scenario);
     Scenario& scenario = setup.scenario;
     apply(request, scenario);
+    add_outside_host(request, scenario);
     scenarios::check_ending(scenario);
     if (!scenario.ignored.empty())
         setup.warnings.push_back(
@@ -285,6 +287,7 @@ RunSetup set_up(const RunRequest& request) {
     scenario.world.recording.directory = setup.out.string();
     scenario.world.recording.log = log_of(setup, "world");
     add_world(setup, request);
+    plan_joined_ports(setup, request);
     add_ir(setup);
 
     for (std::size_t i = 0; i < scenario.robots.size(); ++i)

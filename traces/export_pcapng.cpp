@@ -24,7 +24,7 @@ namespace {
 using cosim::Time;
 using Bytes = pcapng::Bytes;
 using pcapng::LinkType;
-using Writer = pcapng::OrderedWriter;
+using Writer = OrderedWriter;
 
 // Events of LINKTYPE_RTAC_SERIAL.
 enum : std::uint8_t { kDataSent = 1, kFramingError = 7, kParityError = 8, kBreak = 9 };

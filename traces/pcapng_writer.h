@@ -1,144 +1,69 @@
 #pragma once
-// pcapng's blocks: section header, one interface description for each sender, one enhanced packet for each
-// packet (draft-ietf-opsawg-pcapng). Little-endian, padded to 32 bits.
+// Packets of a trace into a pcapng file in the order of their times.
 
 #include "cosim/core/time.h"
+#include "cosim/trace/trace_row.h"
+#include "protocols/pcapng.h"
 #include "traces/reorder_buffer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
-#include <ostream>
 #include <string>
-#include <string_view>
-#include <vector>
+#include <utility>
 
-namespace puckloop::tools::pcapng {
+namespace puckloop::tools {
 
-using cosim::Time;
-using Bytes = std::vector<std::uint8_t>;
-
-enum class LinkType : std::uint16_t {
-    Radio = 195,
-    I2c = 209,
-    Can = 227,
-    Ip4 = 228,
-    Uart = 250,
-    Export = 252
-};
-enum : std::uint32_t { kSection = 0x0A0D0D0A, kInterface = 1, kPacket = 6 };
-enum : std::uint16_t { kEnd = 0, kComment = 1, kName = 2, kResolution = 9 };
-
-inline constexpr Time kNanosecond = 1000;
-
-inline void little(Bytes& out, std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i)
-        out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
-
-inline void pad(Bytes& out) {
-    while (out.size() % 4 != 0)
-        out.push_back(0);
-}
-
-inline void option(Bytes& out, std::uint16_t code, std::string_view value) {
-    little(out, code, 2);
-    little(out, value.size(), 2);
-    out.insert(out.end(), value.begin(), value.end());
-    pad(out);
-}
-
-class Writer {
+/// Packets come as they are complete: each is kept until nothing earlier can come, as release() states. One
+/// that comes later still has the time of the packet before it, and its own in the comment. So has one that
+/// is behind others that had to be written because too much was kept.
+class OrderedWriter : public pcapng::Writer {
   public:
-    explicit Writer(std::ostream& out) : out_(out) {
-        Bytes body;
-        little(body, 0x1A2B3C4D, 4);
-        little(body, 1, 2);
-        little(body, 0, 2);
-        little(body, ~std::uint64_t{0}, 8);  // length of the section: not given
-        block(kSection, body);
-    }
+    using pcapng::Writer::Writer;
 
-    std::uint32_t interface(const std::string& name, LinkType type) {
-        const auto [found, is_new] = interfaces_.try_emplace(name, interfaces_.size());
-        if (is_new) {
-            Bytes body;
-            little(body, static_cast<std::uint16_t>(type), 2);
-            little(body, 0, 2);
-            little(body, 0, 4);  // no limit of length
-            option(body, kName, name);
-            option(body, kResolution, "\x09");  // 1e-9 s
-            option(body, kEnd, "");
-            block(kInterface, body);
-        }
-        return found->second;
-    }
+    /// Octets of data and comments that are kept at most; with what each packet takes besides, memory is some
+    /// twice that.
+    static constexpr std::size_t kMostKept = 16UL << 20;
 
-    void packet(std::uint32_t interface, Time time, const Bytes& data, const std::string& comment) {
-        const auto stamp = static_cast<std::uint64_t>(std::max<Time>(time, 0) / kNanosecond);
-        Bytes body;
-        little(body, interface, 4);
-        little(body, stamp >> 32, 4);
-        little(body, stamp & 0xffffffff, 4);
-        little(body, data.size(), 4);
-        little(body, data.size(), 4);
-        body.insert(body.end(), data.begin(), data.end());
-        pad(body);
-        if (!comment.empty()) {
-            option(body, kComment, comment);
-            option(body, kEnd, "");
-        }
-        block(kPacket, body);
-    }
-
-  protected:
-    void block(std::uint32_t type, const Bytes& body) {
-        constexpr std::size_t kFrame = 12;
-        Bytes all;
-        little(all, type, 4);
-        little(all, body.size() + kFrame, 4);
-        all.insert(all.end(), body.begin(), body.end());
-        little(all, body.size() + kFrame, 4);
-        out_.write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size()));
-    }
-
-    std::ostream& out_;
-    std::map<std::string, std::uint32_t> interfaces_;
-};
-
-/// Packets in the order of their times although they come as they are complete: each is kept until nothing
-/// earlier can come, as release() states. One that comes later still has the time of the packet before it,
-/// and its own in the comment.
-class OrderedWriter : public Writer {
-  public:
-    using Writer::Writer;
-
-    void packet(std::uint32_t interface, Time time, Bytes data, std::string comment) {
-        kept_.push(std::max<Time>(time, 0), {interface, std::move(data), std::move(comment)});
+    void packet(std::uint32_t interface, cosim::Time time, pcapng::Bytes data, std::string comment) {
+        octets_ += size_of(data, comment);
+        kept_.push(std::max<cosim::Time>(time, 0), {interface, std::move(data), std::move(comment)});
+        while (octets_ > kMostKept)
+            write_first();
     }
     /// Writes what is kept and begins before `end`.
-    void release(Time end) {
-        while (!kept_.empty() && kept_.first() < end) {
-            const Time time = kept_.first();
-            Packet one = kept_.pop();
-            if (time < written_)
-                one.comment += fmt::format("{}began at {} s", one.comment.empty() ? "" : "; ",
-                                           cosim::format_seconds(time));
-            written_ = std::max(written_, time);
-            Writer::packet(one.interface, written_, one.data, one.comment);
-        }
+    void release(cosim::Time end) {
+        while (!kept_.empty() && kept_.first() < end)
+            write_first();
     }
+    std::size_t octets_kept() const { return octets_; }
 
   private:
     struct Packet {
         std::uint32_t interface = 0;
-        Bytes data;
+        pcapng::Bytes data;
         std::string comment;
     };
+    static std::size_t size_of(const pcapng::Bytes& data, const std::string& comment) {
+        return sizeof(Packet) + data.size() + comment.size();
+    }
+    void write_first() {
+        constexpr cosim::Time kNanosecond = 1000;
+        const cosim::Time time = kept_.first();
+        Packet one = kept_.pop();
+        octets_ -= size_of(one.data, one.comment);
+        if (time < written_)
+            one.comment +=
+                fmt::format("{}began at {} s", one.comment.empty() ? "" : "; ", cosim::format_seconds(time));
+        written_ = std::max(written_, time);
+        pcapng::Writer::packet(one.interface, static_cast<std::uint64_t>(written_ / kNanosecond), one.data,
+                               one.comment);
+    }
+
     ReorderBuffer<Packet> kept_;
-    Time written_ = 0;
+    std::size_t octets_ = 0;
+    cosim::Time written_ = 0;
 };
 
-}  // namespace puckloop::tools::pcapng
+}  // namespace puckloop::tools

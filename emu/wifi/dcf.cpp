@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace puckloop::wifi {
 
@@ -10,6 +11,12 @@ using cosim::kNever;
 using cosim::Time;
 
 namespace {
+
+/// Exponential, a nanosecond at least; `mean` in s.
+Time drawn_time(RandomStream& random, double mean) {
+    constexpr Time kLeast = cosim::kMicrosecond / 1000;
+    return std::max(kLeast, cosim::from_seconds(-std::log(1.0 - random.uniform()) * mean));
+}
 
 constexpr double kMargin = 3.0;  // dB, of a chosen rate: a thousandth of what is lost at the sensitivity
 
@@ -21,12 +28,45 @@ Dcf::Dcf(const WifiSettings& settings, const std::vector<std::string>& names,
       phy_(settings),
       medium_(settings, names, positions, seed),
       user_(user),
-      queue_(queue) {
+      queue_(queue),
+      burst_random_(seed, "wifi interference") {
     for (const std::string& name : names) {
         Station& station = stations_.emplace_back(RandomStream(seed, fmt::format("wifi backoff {}", name)),
                                                   RandomStream(seed, fmt::format("wifi noise {}", name)));
         station.window = phy_.first_window();
         station.last.resize(names.size());
+    }
+    plan_burst(0);
+}
+
+void Dcf::plan_burst(Time after) {
+    if (settings_.bursts == 0) return;
+    next_burst_ = after + drawn_time(burst_random_, 1.0 / settings_.bursts);
+}
+
+/// Noise from outside: no frame begins with it, so nobody takes it for one that could not be read.
+void Dcf::burst(Time now) {
+    Transmission noise;
+    noise.id = ++transmissions_;
+    noise.station = noise.hop_to = kInterference;
+    noise.start = now;
+    noise.end = now + drawn_time(burst_random_, settings_.burst_time);
+    ++bursts_.count;
+    bursts_.air += noise.end - now;
+    plan_burst(noise.end);
+    const Transmission& sent = medium_.add(std::move(noise));
+    if (settings_.burst_power < settings_.carrier_sense) return;
+    for (Station& station : stations_)
+        found_busy(station, sent.start, sent.end);
+}
+
+void Dcf::burst_ended(Time now, double dbm) {
+    medium_.forget();
+    if (dbm < settings_.carrier_sense) return;
+    for (Station& station : stations_) {
+        if (station.plan != kNever && station.plan <= now) continue;
+        rebase(station, 0);
+        plan(station, now);
     }
 }
 
@@ -81,6 +121,7 @@ void Dcf::put_on_air(Transmission transmission) {
     ++sender.counts.frames;
     sender.counts.air += transmission.end - transmission.start;
     const Transmission& sent = medium_.add(std::move(transmission));
+    user_.began(sent, sent.acknowledges ? nullptr : &sender.queue.front());
     for (std::size_t s = 0; s < stations_.size(); ++s) {
         if (s == sent.station)
             stations_[s].busy_until = std::max(stations_[s].busy_until, sent.end);
@@ -206,6 +247,7 @@ void Dcf::meant_for(const Transmission& sent, const Frame* frame, std::size_t nu
 void Dcf::ended(std::size_t on_air) {
     medium_.on_air()[on_air].over = true;
     const Transmission sent = medium_.on_air()[on_air];
+    if (sent.station == kInterference) return burst_ended(sent.end, settings_.burst_power);
     const bool to_all = sent.hop_to == kEveryStation;
     std::optional<Frame> frame;
     if (!sent.acknowledges) frame = stations_[sent.station].queue.front();
@@ -266,7 +308,7 @@ void Dcf::failed(std::size_t number, Time now) {
 }
 
 Time Dcf::next() const {
-    Time next = kNever;
+    Time next = next_burst_;
     for (const Transmission& one : medium_.on_air())
         if (!one.over) next = std::min(next, one.end);
     for (const Station& one : stations_)
@@ -283,6 +325,7 @@ void Dcf::step() {
     }
     for (std::size_t s = 0; s < stations_.size(); ++s)
         if (stations_[s].ack_due == now) return acknowledge(s, now);
+    if (next_burst_ == now) return burst(now);
     for (std::size_t s = 0; s < stations_.size(); ++s)
         if (stations_[s].give_up == now) return failed(s, now);
     for (std::size_t s = 0; s < stations_.size(); ++s)
@@ -292,7 +335,7 @@ void Dcf::step() {
 Time Dcf::earliest_end() const {
     Time earliest = kNever;
     for (const Transmission& one : medium_.on_air())
-        if (!one.over) earliest = std::min(earliest, one.end);
+        if (!one.over && one.station != kInterference) earliest = std::min(earliest, one.end);
     // Whatever else happens may be followed by a frame, which takes its time.
     for (const Station& one : stations_)
         for (const Time time : {one.ack_due, one.give_up, one.plan})

@@ -35,6 +35,8 @@ struct DcfCounts {
 class DcfUser {
   public:
     virtual ~DcfUser() = default;
+    /// A frame begins; `frame` is null for an acknowledgement.
+    virtual void began(const Transmission& sent, const Frame* frame) = 0;
     /// A frame that `station` read for the first time.
     virtual void received(std::size_t station, const Frame& frame, const Transmission& last) = 0;
     /// What became of a frame at one that it was meant for.
@@ -51,6 +53,11 @@ class Dcf {
 
     Medium& medium() { return medium_; }
     const Phy& phy() const { return phy_; }
+    struct Bursts {
+        std::uint64_t count = 0;  ///< of interference, begun
+        cosim::Time air = 0;      ///< they take
+    };
+    const Bursts& bursts() const { return bursts_; }
     const DcfCounts& counts(std::size_t station) const { return stations_[station].counts; }
 
     /// A frame for the station's queue; false: it is full.
@@ -92,6 +99,9 @@ class Dcf {
     void rebase(Station& station, cosim::Time at_least);
     void found_busy(Station& station, cosim::Time start, cosim::Time end);
     void put_on_air(Transmission transmission);
+    void plan_burst(cosim::Time after);
+    void burst(cosim::Time now);
+    void burst_ended(cosim::Time now, double dbm);
     void send(std::size_t station, cosim::Time now);
     void acknowledge(std::size_t station, cosim::Time now);
     void ended(std::size_t on_air);
@@ -108,6 +118,9 @@ class Dcf {
     std::int64_t queue_;
     std::vector<Station> stations_;
     std::uint64_t transmissions_ = 0;
+    RandomStream burst_random_;
+    cosim::Time next_burst_ = cosim::kNever;
+    Bursts bursts_;
 };
 
 }  // namespace puckloop::wifi

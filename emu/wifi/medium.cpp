@@ -15,7 +15,8 @@ constexpr double kNearest = 0.1;          // m: closer, the far field's law does
 constexpr double kNoiseOfSource = -91.0;  // dBm, for which sensitivities are stated
 constexpr double kLostAtSensitivity = 0.1;
 constexpr double kOctetsOfSource = 1000.0;
-constexpr double kNeverLost = 1e-12;  // nothing is drawn for less
+constexpr double kBodyRadius = 0.037;  // m
+constexpr double kNeverLost = 1e-12;   // nothing is drawn for less
 
 double milliwatts(double dbm) {
     return std::pow(10.0, dbm / 10.0);
@@ -47,18 +48,37 @@ Medium::Medium(const WifiSettings& settings, std::vector<std::string> names, std
         }
 }
 
+/// dB: bodies across the line between the two.
+double Medium::body_loss(std::size_t from, std::size_t to) const {
+    if (settings_.body_loss == 0) return 0.0;
+    const Position &a = positions_[from], &b = positions_[to];
+    const double x = b[0] - a[0], y = b[1] - a[1], square = x * x + y * y;
+    double loss = 0.0;
+    for (const std::size_t body : bodies_) {
+        if (body == from || body == to || square == 0) continue;
+        const Position& at = positions_[body];
+        const double along = ((at[0] - a[0]) * x + (at[1] - a[1]) * y) / square;  // 0 at a, 1 at b
+        if (along <= 0 || along >= 1) continue;
+        const double beside = std::hypot(a[0] + along * x - at[0], a[1] + along * y - at[1]);
+        if (beside < kBodyRadius) loss += settings_.body_loss;
+    }
+    return loss;
+}
+
 double Medium::received_dbm(std::size_t from, std::size_t to) const {
     const double distance =
         std::hypot(positions_[from][0] - positions_[to][0], positions_[from][1] - positions_[to][1]);
     return settings_.power - settings_.loss_at_1m -
-           10.0 * settings_.exponent * std::log10(std::max(distance, kNearest)) - shadows_[from][to];
+           10.0 * settings_.exponent * std::log10(std::max(distance, kNearest)) - shadows_[from][to] -
+           body_loss(from, to);
 }
 
 const Transmission& Medium::add(Transmission transmission) {
     transmission.dbm.resize(positions_.size());
     for (std::size_t to = 0; to < positions_.size(); ++to)
-        transmission.dbm[to] =
-            to == transmission.station ? settings_.power : received_dbm(transmission.station, to);
+        transmission.dbm[to] = transmission.station == kInterference ? settings_.burst_power
+                               : to == transmission.station          ? settings_.power
+                                                                     : received_dbm(transmission.station, to);
     on_air_.push_back(std::move(transmission));
     return on_air_.back();
 }

@@ -5,11 +5,12 @@
 //
 // Deviations:
 // 1. Power falls with one exponent of distance; what differs from that is drawn once for each pair of
-//    stations and stays, however they move. No walls, bodies and fading.
+//    stations and stays, however they move. No walls and fading. Bodies are the stations' that are robots,
+//    discs of 7.4 cm; one is in the way where the line between two stations' centres crosses it.
 // 2. A frame of 1000 octets is lost with 10 % at the sensitivity, a tenth of it with each dB more.
 // 3. Other frames add to the noise, over the whole frame and each in full, whenever they overlap it; a
 //    receiver locks on to no weaker frame first.
-// 4. One channel, which others neither use nor disturb.
+// 4. One channel. What disturbs it from outside are bursts of noise with one power everywhere.
 
 #include "base/random.h"
 #include "cosim/core/octets.h"
@@ -25,6 +26,8 @@ namespace puckloop::wifi {
 using Position = std::array<double, 2>;  ///< metres
 
 inline constexpr std::size_t kEveryStation = ~std::size_t{0};
+/// In place of a station: a burst of noise from outside.
+inline constexpr std::size_t kInterference = kEveryStation - 1;
 
 /// A packet as stations hand it to each other.
 struct Frame {
@@ -60,9 +63,11 @@ class Medium {
            std::uint64_t seed);
 
     void move(std::size_t station, const Position& to) { positions_[station] = to; }
+    /// The station is on a robot, whose body is in the way of others.
+    void embody(std::size_t station) { bodies_.push_back(station); }
     /// What a station receives of another one, in dBm.
     double received_dbm(std::size_t from, std::size_t to) const;
-    /// Sets `dbm` of the transmission, and keeps it.
+    /// Sets `dbm` of the transmission, and keeps it. `station` may be kInterference.
     const Transmission& add(Transmission transmission);
     /// To be asked when it ends. `random`: the receiver's.
     Fate judge(const Transmission& transmission, std::size_t receiver, RandomStream& random) const;
@@ -73,7 +78,10 @@ class Medium {
 
   private:
     WifiSettings settings_;
+    double body_loss(std::size_t from, std::size_t to) const;
+
     std::vector<Position> positions_;
+    std::vector<std::size_t> bodies_;
     std::vector<std::vector<double>> shadows_;  ///< dB, of each pair
     std::vector<Transmission> on_air_;          ///< in the order in which they began
 };

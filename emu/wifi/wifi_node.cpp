@@ -42,6 +42,22 @@ std::vector<Position> station_positions(const WifiSpec& spec) {
     return positions;
 }
 
+constexpr protocols::MacAddress kMacOfAccessPoint{0x02, 0, 0, 0, 0, 0x01};
+
+/// An address that Computers has accepted.
+protocols::MacAddress mac_of_text(const std::string& address) {
+    return protocols::mac_of(protocols::address_of(address).value_or(0));
+}
+
+/// Of the stations.
+std::vector<protocols::MacAddress> macs_of(const WifiSpec& spec) {
+    std::vector<protocols::MacAddress> macs;
+    for (const WifiStation& station : spec.stations)
+        if (!station.wired) macs.push_back(mac_of_text(station.computer.address));
+    if (spec.access_point) macs.push_back(kMacOfAccessPoint);
+    return macs;
+}
+
 nlohmann::ordered_json to_json(const DcfCounts& counts) {
     return {{"frames", counts.frames},
             {"again", counts.again},
@@ -75,9 +91,13 @@ WifiNode::WifiNode(const WifiSpec& spec)
         any_wired_ = any_wired_ || wired;
         station_of_.push_back(wired ? kNobody : computer_of_.size());
         if (!wired) computer_of_.push_back(c);
+        if (spec.stations[c].pose >= 0) dcf_.medium().embody(station_of_[c]);
     }
     if (spec.access_point) computer_of_.push_back(kNobody);
     ports_.push_back({"world", cosim::PortKind::Signals});
+    if (!spec_.pcapng.empty())
+        capture_.emplace(spec_.pcapng, spec_.settings, macs_of(spec_),
+                         spec_.access_point ? names_.size() - 1 : kEveryStation);
     if (spec_.csv.empty()) return;
     csv_ = new_file(spec_.csv);
     if (csv_ == nullptr) throw RunError(fmt::format("{}: cannot be written", spec_.csv));
@@ -201,6 +221,18 @@ void WifiNode::pass_on(const Frame& frame, Time now, const Transmission* last) {
         submit(computer_of_.size() - 1, std::move(next), now);
 }
 
+void WifiNode::began(const Transmission& sent, const Frame* frame) {
+    if (!capture_) return;
+    if (frame == nullptr) return capture_->add(sent, nullptr, {}, {});
+    const auto read = protocols::decode_ip(frame->octets.view());
+    const IpAddress to = read ? read->to : 0;
+    constexpr int kGroup = 0xe;  // addresses that begin with these four bits
+    capture_->add(sent, frame, mac_of_text(spec_.stations[frame->from].computer.address),
+                  !computers_.is_for_many(to) ? protocols::mac_of(to)
+                  : to >> 28 == kGroup        ? protocols::group_mac(to)
+                                              : protocols::kAllMac);
+}
+
 void WifiNode::received(std::size_t station, const Frame& frame, const Transmission& last) {
     if (computer_of_[station] == kNobody) return pass_on(frame, last.end, &last);
     if (computer_of_[station] == frame.from) return;  // its own broadcast, from the access point
@@ -263,7 +295,11 @@ std::string WifiNode::finish() {
         report[kAccessPoint] = to_json(counts);
         report[kAccessPoint]["queue_full"] = counts.queue_full;
     }
+    if (spec_.settings.bursts != 0)
+        report["interference"] = {{"bursts", dcf_.bursts().count},
+                                  {"air_s", cosim::to_seconds(dcf_.bursts().air)}};
     if (csv_ != nullptr) std::fflush(csv_);
+    if (capture_) capture_->flush();
     const network::NetworkFaults& faults = computers_.faults();
     if (!faults.empty()) report["faults"] = cosim::fault_results(faults.carried(), granted_);
     return report.dump();

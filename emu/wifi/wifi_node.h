@@ -12,6 +12,7 @@
 #include "cosim/core/seconds_form.h"
 #include "emu/network/computers.h"
 #include "emu/wifi/dcf.h"
+#include "emu/wifi/frame_capture.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -54,6 +55,7 @@ struct WifiSpec {
     std::optional<Position> access_point{};
     std::vector<WifiStation> stations{};
     std::string csv{};
+    std::string pcapng{};
     std::vector<cosim::CarriedFault> faults{};
 
     template <class Visitor>
@@ -68,7 +70,8 @@ struct WifiSpec {
                      field("queue", &S::queue, "packets that an interface keeps").at_least(1),
                      part(&S::settings), field("access_point", &S::access_point, "where it is; none: ad-hoc"),
                      field("stations", &S::stations, "the computers").required(),
-                     field("csv", &S::csv, "what became of frames; empty: none"), unlisted(&S::faults));
+                     field("csv", &S::csv, "what became of frames; empty: none"),
+                     field("pcapng", &S::pcapng, "captured frames; empty: none"), unlisted(&S::faults));
     }
 };
 static_assert(lists_all_fields<WifiSpec>);
@@ -108,6 +111,7 @@ class WifiNode : public cosim::Node, private DcfUser {
     void pass_on(const Frame& frame, cosim::Time now, const Transmission* last);
     void deliver(const Frame& frame, std::size_t computer, cosim::Time start, cosim::Time end);
     std::size_t computer_of(protocols::IpAddress to, std::size_t from) const;
+    void began(const Transmission& sent, const Frame* frame) override;
     void received(std::size_t station, const Frame& frame, const Transmission& last) override;
     void became(const Transmission& sent, std::size_t station, Fate fate) override;
     void dropped(std::size_t station, const Frame& frame, cosim::Time now) override;
@@ -129,6 +133,7 @@ class WifiNode : public cosim::Node, private DcfUser {
     cosim::Time granted_ = 0;
     bool any_wired_ = false;
     std::FILE* csv_ = nullptr;
+    std::optional<FrameCapture> capture_;
 };
 
 }  // namespace puckloop::wifi

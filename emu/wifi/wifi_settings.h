@@ -24,6 +24,11 @@ struct WifiSettings {
     std::int64_t attempts = 7;
     std::int64_t shortest_window = 0;
     std::int64_t longest_window = 1023;
+    double body_loss = 0.0;
+    double bursts = 0.0;
+    double burst_time = 0.002;
+    double burst_power = -60.0;
+    bool capture = false;
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
@@ -67,7 +72,17 @@ struct WifiSettings {
                 .within(0, 1023),
             field("longest_window", &S::longest_window, "last contention window, after doubling [8]")
                 .in("slots")
-                .within(1, 65535));
+                .within(1, 65535),
+            field("body_loss", &S::body_loss,
+                  "of each robot's body in the way between two stations, ?; 0: bodies are transparent")
+                .in("dB")
+                .within(0, 60),
+            field("bursts", &S::bursts, "of interference, mean number, ?; 0: none").in("Hz").within(0, 10000),
+            field("burst_time", &S::burst_time, "mean length of a burst, drawn (exponential), ?")
+                .in("s")
+                .within(1e-6, 10),
+            field("burst_power", &S::burst_power, "of bursts at every station, ?").in("dBm").within(-120, 0),
+            field("capture", &S::capture, "frames go to wifi.pcapng, with radiotap headers"));
     }
 };
 static_assert(lists_all_fields<WifiSettings>);

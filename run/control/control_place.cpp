@@ -32,6 +32,7 @@ constexpr const char* kNote = "control.json";
 constexpr const char* kFolder = "puckloop-";
 constexpr const char* kSocket = "act";
 constexpr const char* kClientSocket = "control";
+constexpr const char* kJoinedSocket = "join";  // and its port
 
 /// The socket that a note names; empty: none, or not one that new_control_path() could have made.
 std::string socket_in(const nlohmann::json& note) {
@@ -74,7 +75,9 @@ void remove_left_over_folders(const fs::path& place) {
         struct stat status {};
         if (::lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != ::geteuid())
             continue;
-        const std::array sockets{folder / kSocket, folder / kClientSocket};
+        std::vector<fs::path> sockets{folder / kSocket, folder / kClientSocket};
+        for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+            if (at->path().filename().string().starts_with(kJoinedSocket)) sockets.push_back(at->path());
         const auto heard = [&](const fs::path& socket) {
             return fs::exists(fs::symlink_status(socket, failed)) && !is_left_over(socket.string());
         };
@@ -109,6 +112,10 @@ std::string new_control_path() {
             return path;
     }
     return "/tmp/" + name;
+}
+
+std::string joined_socket_beside(const std::string& socket, unsigned port) {
+    return (fs::path(socket).parent_path() / fmt::format("{}{}", kJoinedSocket, port)).string();
 }
 
 std::string client_socket_beside(const std::string& socket) {

@@ -15,6 +15,9 @@ std::string new_control_path();
 /// (run/driven/driven_run.h).
 std::string client_socket_beside(const std::string& socket);
 
+/// Where the program of a joined port listens (run/nodes/joined_ports.h).
+std::string joined_socket_beside(const std::string& socket, unsigned port);
+
 /// While it lives: the private folder (mode 0700) of the socket, and control.json, which gives its place.
 /// Afterwards control.json states that the run has ended.
 class ControlPlace {

@@ -41,6 +41,7 @@ struct RunRequest {
     bool cache = false;  ///< boots are taken from the user's cache and kept there
     bool in_process = false;
     bool realtime = false;
+    std::vector<std::string> joins;   ///< "PORT=HOST:PORT": ways into the network from outside
     bool paced = false;               ///< by the wall clock, with Linux programs in simulated time
     std::filesystem::path events;     ///< [[event]] tables in place of the scenario's; empty: none
     std::vector<std::string> faults;  ///< one line each: "drop link=robot0.uart at=2s"

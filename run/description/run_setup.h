@@ -2,6 +2,7 @@
 // What a run is made of: nodes as they are described, links, and where results go.
 
 #include "cosim/conductor.h"
+#include "ends/port_relay.h"
 #include "run/description/node_description.h"
 #include "scenarios/description/scenario.h"
 
@@ -26,10 +27,11 @@ struct RunSetup {
     std::filesystem::path out;
     std::vector<PlannedNode> nodes;
     std::vector<cosim::LinkSpec> links;
-    std::string control{};                ///< socket at which the world takes commands; empty: none
-    std::vector<std::string> warnings{};  ///< what looks like a mistake
-    std::string cache_unused{};           ///< why no boot is taken from the cache; empty: no such reason
-    std::filesystem::path save_state{};   ///< where the boards' states at `save_at` go; empty: nowhere
+    std::string control{};                    ///< socket at which the world takes commands; empty: none
+    std::vector<exec::RelayedPort> joined{};  ///< ports on loopback that lead into the network
+    std::vector<std::string> warnings{};      ///< what looks like a mistake
+    std::string cache_unused{};               ///< why no boot is taken from the cache; empty: no such reason
+    std::filesystem::path save_state{};       ///< where the boards' states at `save_at` go; empty: nowhere
     cosim::Time save_at = 0;
     std::filesystem::path from{};  ///< snapshot that the run goes on from; empty: none
     cosim::Time from_time = 0;     ///< of that

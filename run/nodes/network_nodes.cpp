@@ -54,6 +54,7 @@ wifi::WifiSpec wifi_spec(const RunSetup& setup, const std::vector<scenarios::Net
     spec.settings = *medium.wifi;
     spec.access_point = medium.access_point;
     spec.csv = (setup.out / "wifi.csv").string();
+    if (spec.settings.capture) spec.pcapng = (setup.out / "wifi.pcapng").string();
     for (const scenarios::NetworkComputer& one : computers) {
         wifi::WifiStation station{.computer = {one.name, one.address}};
         if (one.is_host) {

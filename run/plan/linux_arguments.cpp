@@ -9,15 +9,15 @@ namespace puckloop::tools {
 namespace {
 
 constexpr auto kRunOptions = std::to_array<std::string_view>(
-    {"--firmware",    "--linux",    "--in-process",   "--realtime",   "--duration",
-     "--seed",        "--model",    "--out",          "--json",       "--stall",
-     "--threads",     "--paced",    "--events",       "--strict",     "--list-parameters",
-     "--log-level",   "--log-file", "--verbose",      "--save-state", "--at",
-     "--from-state",  "--no-cache", "--no-translate", "--fault",      "--trace-format",
-     "--record",      "--live",     "--gdb",          "--save-at",    "--save",
-     "--from",        "--stats",    "--set",          "--floor",      "--floor-scale",
-     "--linux-start", "--control",  "--mission",      "--junit",      "--tap",
-     "--view",        "--view-port", "--shell"});
+    {"--firmware",    "--linux",     "--in-process",   "--realtime",   "--duration",
+     "--seed",        "--model",     "--out",          "--json",       "--stall",
+     "--threads",     "--paced",     "--events",       "--strict",     "--list-parameters",
+     "--log-level",   "--log-file",  "--verbose",      "--save-state", "--at",
+     "--from-state",  "--no-cache",  "--no-translate", "--fault",      "--trace-format",
+     "--record",      "--live",      "--gdb",          "--save-at",    "--save",
+     "--from",        "--stats",     "--set",          "--floor",      "--floor-scale",
+     "--linux-start", "--control",   "--mission",      "--junit",      "--tap",
+     "--view",        "--view-port", "--shell",        "--join"});
 
 bool is_run_option(std::string_view word) {
     return std::any_of(kRunOptions.begin(), kRunOptions.end(), [&](std::string_view option) {

@@ -215,6 +215,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, const st
         report["from"] = {{"file", setup.from.string()},
                           {"at_s", cosim::to_seconds(setup.from_time)},
                           {"restored_s", outcome.restored_s}};
+    for (const exec::RelayedPort& port : setup.joined)
+        report["joined_ports"].push_back(port.port);
     if (!setup.cache_unused.empty()) report["cache_unused"] = setup.cache_unused;
     file.write(report.dump(2) + "\n");
 }

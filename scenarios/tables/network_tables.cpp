@@ -189,7 +189,8 @@ std::string address_for(const Scenario& scenario, const Addressed& one) {
     return free_address(*scenario.network, one.index, one.is_host).value_or("");
 }
 
-/// Every computer has an address of its own in the network.
+}  // namespace
+
 void check_addresses(const Scenario& scenario) {
     const NetworkMedium& medium = *scenario.network;
     const IpAddress network = protocols::address_of(medium.address).value_or(0),
@@ -218,8 +219,6 @@ void check_addresses(const Scenario& scenario) {
                    "an address of its own for each computer");
     }
 }
-
-}  // namespace
 
 std::string read_network_address(Reader& reader) {
     std::string address = reader.text("address", "");

@@ -21,8 +21,8 @@ void read_number(Reader& reader, const auto& one, double& value) {
                     fmt::format("{:g} to {:g} {}", one.least, one.most, one.unit == "1" ? "" : one.unit));
 }
 
-/// Every field is a number with its unit, a whole number or a text; what texts there may be is for the
-/// caller. Throws InputError, also at a key that is no field.
+/// Every field is a number with its unit, a whole number, a text or a yes or no; what texts there may be is
+/// for the caller. Throws InputError, also at a key that is no field.
 template <Described T>
 void read_fields(Reader reader, T& result) {
     const auto read = [&](const auto& one) {
@@ -30,6 +30,8 @@ void read_fields(Reader reader, T& result) {
         using Value = std::remove_reference_t<decltype(value)>;
         if constexpr (std::is_same_v<Value, std::string>) {
             value = reader.text(one.key, value);
+        } else if constexpr (std::is_same_v<Value, bool>) {
+            value = reader.flag(one.key, value);
         } else if constexpr (std::is_integral_v<Value>) {
             value = reader.integer(one.key, value, static_cast<std::int64_t>(one.least),
                                    static_cast<std::int64_t>(one.most));

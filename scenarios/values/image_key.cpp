@@ -23,6 +23,7 @@ constexpr auto kImages = std::to_array<Image>({
     {"pic", "sound", "sound.hex"},
     {"pic", "ears", "ears.hex"},
     {"pic", "bluetooth", "talk.hex"},
+    {"pic", "network", "network.hex"},
     {"pic", "camera", "camera.hex"},
     {"pic", "can", "can.hex"},
     {"rab", "own", "rab.hex"},

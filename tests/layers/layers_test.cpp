@@ -92,6 +92,7 @@ const std::vector<std::string> kFolders = {
     "linuxboard/record",
     "linuxboard/netmanager",
     "linuxboard/forward",
+    "linuxboard/gate",
     "linuxboard/shim/wire",
     "linuxboard/shim/network",
     "linuxboard/shim/preload/host",

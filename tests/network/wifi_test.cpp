@@ -310,3 +310,48 @@ TEST_CASE("settings that cannot be are refused", "[wifi]") {
     spec.access_point.reset();
     CHECK_THROWS_WITH(wifi::WifiNode(spec), Catch::Contains("sink is wired to no access point"));
 }
+
+TEST_CASE("a robot's body in the way costs its loss, and no other one does", "[wifi]") {
+    WifiSettings settings;
+    settings.shadowing = 0;
+    settings.body_loss = 6;
+    wifi::Medium medium(settings, {"a", "b", "c", "d"}, {{-1, 0}, {1, 0}, {0, 0.03}, {0, 3}}, 1);
+    settings.body_loss = 0;
+    const wifi::Medium clear(settings, {"a", "b", "c", "d"}, {{-1, 0}, {1, 0}, {0, 0.03}, {0, 3}}, 1);
+    medium.embody(2);
+    CHECK(medium.received_dbm(0, 1) == Approx(clear.received_dbm(0, 1) - 6));
+    CHECK(medium.received_dbm(1, 0) == medium.received_dbm(0, 1));
+    CHECK(medium.received_dbm(0, 2) == clear.received_dbm(0, 2));  // its own
+    CHECK(medium.received_dbm(0, 3) == clear.received_dbm(0, 3));
+    for (const wifi::Position& aside : {wifi::Position{0, 0.04}, {1.05, 0}, {-1.2, 0}}) {
+        medium.move(2, aside);
+        CHECK(medium.received_dbm(0, 1) == clear.received_dbm(0, 1));
+    }
+    medium.move(2, {0.5, -0.03});
+    medium.embody(3);
+    medium.move(3, {-0.5, 0.01});
+    CHECK(medium.received_dbm(0, 1) == Approx(clear.received_dbm(0, 1) - 12));
+}
+
+TEST_CASE("bursts of interference take their share of the channel, and spoil what they hit", "[wifi]") {
+    wifi::WifiSpec spec = ring(2);
+    const double clean = flood(spec, 2.0).bits;
+    spec.settings.bursts = 100;
+    spec.settings.burst_time = 0.002;
+    spec.settings.burst_power = -50;
+    const Flooded disturbed = flood(spec, 2.0);
+    // A gap of 10 ms in the mean, then 2 ms; the frame that a burst hits (1.3 ms) is lost beside.
+    const double share = disturbed.report["interference"]["air_s"].get<double>() / 2.0;
+    CHECK(disturbed.report["interference"]["bursts"].get<int>() == Approx(2.0 / 0.012).epsilon(0.25));
+    CHECK(share == Approx(1.0 / 6).epsilon(0.35));
+    CHECK(disturbed.bits < (1 - share) * clean);
+    CHECK(disturbed.bits > 0.6 * (1 - share) * clean);
+    // However time is granted.
+    CHECK(flood(spec, 0.5, kMillisecond).bits == flood(spec, 0.5).bits);
+    // Too weak to be sensed, and 30 dB below every frame.
+    spec.settings.burst_power = -110;
+    const Flooded weak = flood(spec, 2.0);
+    CHECK(weak.bits == Approx(clean).epsilon(0.02));
+    CHECK(weak.report["interference"]["bursts"] > 100);
+    CHECK_FALSE(flood(ring(1), 0.1).report.contains("interference"));
+}

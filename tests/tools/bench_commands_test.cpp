@@ -119,6 +119,10 @@ TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetoo
                   "nowhere.hex");
     check_refused("bench sound --experiment radio", "--radio IMAGE");
     check_refused("bench sound --radio x.hex", "--firmware IMAGE");
+    check_refused("bench network --robots 1", "--robots");
+    check_refused("bench network --robots 2 --runs 1 --firmware nowhere.hex --out " +
+                      scratch_path("refused_team").string(),
+                  "nowhere.hex");
 }
 
 TEST_CASE("exchanges of modules and of boards are tabled, drawn and listed", "[bluetooth]") {
@@ -138,6 +142,18 @@ TEST_CASE("exchanges of modules and of boards are tabled, drawn and listed", "[b
     CHECK_THAT(boards.output, Contains("talk.hex"));
     CHECK(lines_of(out / "exchanges.csv") == 4);
     CHECK_THAT(text_of(out / "exchanges.svg"), Contains("talk.hex: 3 attempts"));
+}
+
+TEST_CASE("teams' pause times are tabled, drawn and listed", "[network]") {
+    const fs::path out = scratch_path("bench_network");
+    const Result result = run_puckloop(fmt::format(
+        "bench network --robots 2 --robots 3 --runs 1 --duration 12 --forwarder puckloop-forward --out {}",
+        out.string()));
+    INFO(result.output);
+    REQUIRE(result.status == 0);
+    CHECK_THAT(result.output, Contains("0 of 8 packets lost (published: 0 of 2000)"));
+    CHECK(lines_of(out / "pauses.csv") == 9);
+    CHECK_THAT(text_of(out / "pauses.svg"), Contains("802.11g, 1 runs of 12 s"));
 }
 
 TEST_CASE("a short walk with ears and radio leaves its table and pictures", "[bluetooth][sound]") {

@@ -89,7 +89,8 @@ TEST_CASE("a range-and-bearing board hangs on its robot's bus and in the air") {
     CHECK(rab.at("crystal_ppm").get<double>() == Approx(30.0));
     CHECK(rab.at("i2c_hertz") == 400e3);
     CHECK(std::filesystem::path(rab.at("firmware").get<std::string>()).is_absolute());
-    CHECK(node(setup, "left.i2c").at("boards") == json::parse(R"([{"main_board":false,"name":"rab","prompt":false}])"));
+    CHECK(node(setup, "left.i2c").at("boards") ==
+          json::parse(R"([{"main_board":false,"name":"rab","prompt":false}])"));
     CHECK(link(setup, "left.i2c.rab") == "left.rab.i2c left.i2c.rab");
     CHECK(link(setup, "right.ir") == "right.rab.ir ir.right.ir");
     CHECK(link(setup, "left.i2c.linux") == "left.linux.i2c left.i2c.linux");

@@ -253,6 +253,13 @@ void declare_run(Command& app, int& status) {
                    "the same, but Linux programs stay in simulated time: the run can be repeated")
         ->excludes(realtime);
     command
+        ->add_option(
+            "--join", request.joins,
+            "PORT=HOST:PORT: 127.0.0.1:PORT leads to a port in the run's network while it goes on, with "
+            "--paced or --realtime (docs/network.md); repeatable")
+        ->allow_extra_args(false)
+        ->type_name("PORT=HOST:PORT");
+    command
         ->add_option("--events", request.events,
                      "[[event]] tables in place of the scenario's, such as events.toml of an earlier run")
         ->check(not_empty())

@@ -66,6 +66,7 @@ std::vector<Row> images() {
         {"tam.elf", "own firmware of a TAM, made by the build"},
         {"camera.hex", "takes pictures and sends them over UART1"},
         {"talk.hex", "talks over the Bluetooth module"},
+        {"network.hex", "a team that says hello over WiFi or Bluetooth"},
         {"can.hex", "talks on a CAN bus (main board)"},
         {"ecan.hex", "talks on a CAN bus (range-and-bearing board)"},
         {"sound.hex", "plays sounds"},

@@ -92,6 +92,7 @@ ordered_json report_schema() {
           {"why", of("string", "why there is no score, or what the program did wrong")}}},
         {"required", {"kind", "score", "better", "steps"}}};
     p["from"] = of("object", "the snapshot that the run went on from");
+    p["joined_ports"] = {{"type", "array"}, {"items", {{"type", "integer"}}}};
     p["cache_unused"] = of("string", "why no boot was taken from the cache");
     schema["required"] = {"format",       "puckloop", "command_line", "scenario", "files",       "seed",
                           "success",      "ended_by", "ended_why",    "failures", "simulated_s", "wall_s",

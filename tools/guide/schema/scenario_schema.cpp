@@ -308,7 +308,7 @@ ordered_json fault_schema() {
 
 namespace {
 
-/// Keys of a struct that lists its fields: numbers with a unit, whole numbers and texts.
+/// Keys of a struct that lists its fields: numbers with a unit, whole numbers, texts and flags.
 template <Described T>
 ordered_json fields_schema(std::string_view about) {
     constexpr std::pair<std::string_view, std::string_view> kTypes[]{
@@ -320,6 +320,7 @@ ordered_json fields_schema(std::string_view about) {
                                         [&](const auto& known) { return known.first == one.unit; });
         using Value = std::remove_cvref_t<decltype(std::declval<T>().*one.member)>;
         constexpr std::string_view kPlain = std::is_same_v<Value, std::string> ? "text"
+                                            : std::is_same_v<Value, bool>      ? "flag"
                                             : std::is_integral_v<Value>        ? "integer"
                                                                                : "number";
         const SchemaKey key{one.key, type == std::end(kTypes) ? kPlain : type->second, one.about};
