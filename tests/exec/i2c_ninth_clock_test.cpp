@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
+#include "tests/wires/wire_slave.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -268,9 +269,9 @@ std::vector<Shown> on_bench(const exec::Workbench& bench, const std::vector<Act>
 }  // namespace
 
 TEST_CASE("a main board that breaks its agreement finds on the bus what the wires show, drawn") {
-    constexpr std::uint64_t kSeeds = 24;
+    const auto drawn_seeds = static_cast<std::uint64_t>(wires::seeds(24));
     int collisions = 0, low_first = 0;
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= drawn_seeds; ++seed) {
         RandomStream random(seed, "ninth clock");
         const std::vector<Act> acts = drawn(random);
         const exec::Workbench bench;
