@@ -87,7 +87,8 @@ cosim::Time DspicTarget::next_step(cosim::Time until) {
 }
 
 void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
-    if (phase.kind == cosim::I2cPhaseKind::Acknowledge) {  // of the byte before; nobody is asked
+    // The ninth clock of the byte before, or a low SDA found in it: nobody is asked.
+    if (phase.kind == cosim::I2cPhaseKind::Acknowledge || phase.kind == cosim::I2cPhaseKind::BusLost) {
         if (devices_ && unit == kI2cDeviceUnit) devices_->phase(phase);
         return;
     }

@@ -1,6 +1,7 @@
 #include "cosim/i2c/i2c_bus.h"
 
 #include "cosim/i2c/i2c_figures.h"
+#include "cosim/i2c/i2c_shared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,10 +134,19 @@ void I2cBusNode::phase_from(PortIndex port, const I2cPhase& phase) {
     case I2cPhaseKind::Acknowledge:
         if (owns && phase.ack == 0) not_acknowledged(phase);
         break;
-    case I2cPhaseKind::Data:
     case I2cPhaseKind::BusLost:
+        if (owns && !pending_) acknowledge_was_in_the_way(port, phase);
+        break;
+    case I2cPhaseKind::Data:
         break;
     }
+}
+
+/// A device's acknowledge that nobody clocks holds SDA low.
+void I2cBusNode::acknowledge_was_in_the_way(PortIndex port, const I2cPhase& phase) {
+    ++counters_.lost;
+    log_.lost(now_, port, phase);
+    sda_held();
 }
 
 void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
@@ -254,6 +264,7 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
     out.kind = kind;
     out.byte = kind == I2cPhaseKind::Data ? reply.byte : phase.byte;
     out.ack = kind == I2cPhaseKind::Data ? phase.ack : (reply.acknowledge ? 1 : 0);
+    if (kind == I2cPhaseKind::Data && !read_ && reply.acknowledge) out.ack = kDeviceAcknowledges;
     out.stretch = reply.stretch;
     // What ends within the low half of a clock lengthens nothing on the wires.
     const bool stretched = reply.stretch > half_clock();

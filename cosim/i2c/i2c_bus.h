@@ -215,6 +215,7 @@ class I2cBusNode final : public Node {
     void hang();
     void let_go(const I2cPhase& phase);
     void sda_held();
+    void acknowledge_was_in_the_way(PortIndex port, const I2cPhase& phase);
     void recover(Time from);
     const std::string& device_name(PortIndex port) const;
     std::string device_list() const;

@@ -11,6 +11,7 @@ namespace puckloop::cosim {
 namespace {
 constexpr Time kRecoveryClocks = 10;          // nine for the device, one for the STOP
 constexpr Time kHalfClocksBeforeAnswer = 15;  // of the sixteen before the ninth clock
+constexpr unsigned kLastBit = 1;
 
 /// A general call, and the first byte of a ten-bit address.
 bool is_for_several(std::uint8_t address_byte) {
@@ -177,7 +178,11 @@ void I2cBusNode::settle() {
         changes_ = std::max(done.busy_until, now_ + nominal_period_);
         return;
     }
-    if (done.phase.kind == I2cPhaseKind::Write && read_ && (done.phase.byte & ~done.answer.byte) != 0) {
+    const bool both_send = done.phase.kind == I2cPhaseKind::Write && read_;
+    const bool behind_ninth = both_send && done.phase.ack == kBehindNinthClock;
+    const auto driven = static_cast<std::uint8_t>(done.phase.byte & (behind_ninth ? ~kLastBit : ~0));
+    if (behind_ninth) done.answer.acknowledge = (done.answer.byte & kLastBit) == 0;
+    if (both_send && (driven & ~done.answer.byte) != 0) {
         answer_masters(done, I2cPhaseKind::BusLost, {false, kReleased, done.answer.stretch});
         return sda_held();  // nobody clocks the rest of the byte
     }

@@ -16,4 +16,14 @@ inline constexpr I2cPhaseKind kSharedNotice = I2cPhaseKind::Read;
 /// with its decision, which is answered: Acknowledge with the line in the ninth clock, or BusLost.
 inline constexpr std::uint8_t kAcknowledgedLater = 2;
 
+/// `ack` of the Data of a byte read from devices that are to receive, one of which acknowledges it: it holds
+/// SDA low in the ninth clock, until SCL has gone up and down. A master that finds it so lets both lines go
+/// and sends a BusLost.
+inline constexpr std::uint8_t kDeviceAcknowledges = 3;
+
+/// `ack` of a Write whose first bit, a 0, was the ninth clock of the byte before it: `byte` is what the
+/// devices see from there on, seven bits and a 1, which is the master's own ninth clock. Acknowledged if that
+/// is low; by devices that are to receive in the clock after it.
+inline constexpr std::uint8_t kBehindNinthClock = 2;
+
 }  // namespace puckloop::cosim

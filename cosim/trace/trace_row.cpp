@@ -78,9 +78,21 @@ void put_hex(std::string& out, unsigned value) {
         out += kDigits[(value >> shift) & 0xf];
 }
 
+// cosim/i2c/i2c_shared.h, which is above this folder.
+constexpr std::uint8_t kBehindNinthClock = 2, kDeviceAcknowledges = 3;
+constexpr std::string_view kBehindNinth = "write+ninth", kDeviceHolds = "data+device";
+
 void put_phase(std::string& out, const I2cPhase& phase) {
     if (phase.kind == I2cPhaseKind::Acknowledge) {
         out += phase.ack ? "ack" : "nack";
+        return;
+    }
+    if (phase.kind == I2cPhaseKind::Write && phase.ack == kBehindNinthClock) {
+        out += kBehindNinth;
+        return;
+    }
+    if (phase.kind == I2cPhaseKind::Data && phase.ack == kDeviceAcknowledges) {
+        out += kDeviceHolds;
         return;
     }
     out += kPhases.at(static_cast<std::size_t>(phase.kind));
@@ -299,6 +311,9 @@ I2cPhase parse_phase(const Parser& in) {
     } else if (text == "read+ack" || text == "read+nack") {
         phase.kind = I2cPhaseKind::Read;
         phase.ack = text == "read+ack";
+    } else if (text == kBehindNinth || text == kDeviceHolds) {
+        phase.kind = text == kBehindNinth ? I2cPhaseKind::Write : I2cPhaseKind::Data;
+        phase.ack = text == kBehindNinth ? kBehindNinthClock : kDeviceAcknowledges;
     } else if (named != kPhases.end() && !text.empty() && text != "read") {
         phase.kind = static_cast<I2cPhaseKind>(named - kPhases.begin());
     } else {

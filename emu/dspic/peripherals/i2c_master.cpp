@@ -26,6 +26,7 @@ constexpr double kAcknowledgeClocks = 0.125;  // deviation 2
 constexpr double kByteClocks = 9.0;
 constexpr double kDataClocks = 8.0;
 constexpr std::uint8_t kReservedAddress = 0xFF;
+constexpr std::uint8_t kFirstBit = 0x80, kAllButFirst = 0x7F, kRead = 1;
 
 }  // namespace
 
@@ -114,7 +115,28 @@ void I2cMaster::end_byte_read(cosim::Time start) {
     state_.received = false;
 }
 
+/// What is asked for makes a clock or a condition with SDA high, where a device that was read though it is to
+/// receive holds SDA low: its acknowledge, which ends with this clock.
+bool I2cMaster::finds_low(std::uint16_t asked) {
+    if (!std::exchange(state_.ninth_low, false) || !state_.owns_bus || state_.shared) return false;
+    if (asked & (kI2CxCON["PEN"] | kI2CxCON["RSEN"])) return true;
+    return (asked & kI2CxCON["ACKEN"]) && (reg(kCon) & kI2CxCON["ACKDT"]);
+}
+
+/// SDA was low: a collision (DS70068, 21.5.6 and 21.11). The bus is left as it is.
+void I2cMaster::collide(Cycle at) {
+    std::uint16_t& stat = reg(kStat);
+    stat = static_cast<std::uint16_t>((stat | kI2CxSTAT["BCL"]) & ~(kI2CxSTAT["TRSTAT"] | kI2CxSTAT["TBF"]));
+    state_.collides = state_.owns_bus = state_.received = false;
+    send(I2cPhaseKind::BusLost, 0, 0, clock_.time_of(at));
+    reg(kCon) = static_cast<std::uint16_t>(reg(kCon) & ~kOneAtATime);
+    state_.activity = Activity::Idle;
+    state_.ends = state_.buffer_empty = kNoCycle;
+    around_.interrupts.raise(setup_.master_irq, at);
+}
+
 void I2cMaster::complete(Cycle at) {
+    if (state_.collides) return collide(at);
     std::uint16_t& con = reg(kCon);
     std::uint16_t& stat = reg(kStat);
     switch (state_.activity) {
@@ -123,7 +145,7 @@ void I2cMaster::complete(Cycle at) {
         stop_condition_seen(false);
         state_.owns_bus = true;
         state_.address_next = true;
-        state_.received = false;
+        state_.received = state_.ninth_low = false;
         break;
     case Activity::Stop:
         stop_condition_seen(true);
@@ -155,7 +177,8 @@ void I2cMaster::due(void* owner, Cycle due) {
         assign(self.reg(kStat), kI2CxSTAT["TBF"], false);
     }
     if (self.state_.ends <= due) {
-        if (self.state_.activity == Activity::Transmit) self.reg(kStat) |= kI2CxSTAT["ACKSTAT"];
+        if (self.state_.activity == Activity::Transmit && !self.state_.collides)
+            self.reg(kStat) |= kI2CxSTAT["ACKSTAT"];
         self.complete(due);
     }
     self.plan();
@@ -185,18 +208,24 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     std::uint16_t& stat = reg(kStat);
     if (phase.kind == I2cPhaseKind::BusLost) {
         stat |= kI2CxSTAT["BCL"];
-        state_.owns_bus = state_.shared = false;
+        state_.owns_bus = state_.shared = state_.ninth_low = state_.behind_ninth = false;
         if (state_.activity == Activity::Stop) state_.activity = Activity::Idle;  // none was made
     } else if (state_.activity == Activity::Acknowledge || state_.activity == Activity::Stop) {
         // The bus says when it is over.
     } else if (state_.activity == Activity::Transmit) {
-        assign(stat, kI2CxSTAT["ACKSTAT"], !phase.ack);
+        const bool later = std::exchange(state_.behind_ninth, false) && !state_.reads;
+        state_.ninth_low = later && phase.ack;  // of one that receives: its acknowledge is still to come
+        assign(stat, kI2CxSTAT["ACKSTAT"], later || !phase.ack);
         if (!phase.ack && address_sent_) ++refused_[sent_address_];
-    } else if (stat & kI2CxSTAT["RBF"]) {
-        stat |= kI2CxSTAT["I2COV"];
     } else {
-        reg(kRcv) = phase.byte;
-        stat |= kI2CxSTAT["RBF"];
+        const bool first_low = std::exchange(state_.ninth_low, phase.ack == cosim::kDeviceAcknowledges);
+        state_.behind_ninth = true;
+        if (stat & kI2CxSTAT["RBF"]) {
+            stat |= kI2CxSTAT["I2COV"];
+        } else {
+            reg(kRcv) = first_low ? phase.byte & kAllButFirst : phase.byte;
+            stat |= kI2CxSTAT["RBF"];
+        }
     }
     complete(at);
 }
@@ -239,12 +268,36 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
     state.buffer_empty = self.around_.now + 1 + self.clocks(kDataClocks);
     self.around_.events.schedule(self.slot_, state.buffer_empty);
     const bool address_byte = state.address_next;
+    if (!address_byte && !state.shared) {
+        const bool first_is_ninth = state.ninth_low || (state.received && state.behind_ninth);
+        if (state.ninth_low && (value & kFirstBit)) return self.transmit_first_bit();
+        if (first_is_ninth && !(value & kFirstBit))
+            return self.transmit_behind_ninth(static_cast<std::uint8_t>(value));
+    }
     if (!address_byte) self.end_byte_read(self.clock_.time_of(self.around_.now + 1));
-    state.address_next = false;
+    state.address_next = state.behind_ninth = false;
+    if (address_byte) state.reads = value & kRead;
     self.address_sent_ = address_byte;
     self.sent_address_ = static_cast<std::uint8_t>(value >> 1 & 0x7F);
     self.send(address_byte ? I2cPhaseKind::Start : I2cPhaseKind::Write, static_cast<std::uint8_t>(value), 0,
               self.clock_.time_of(self.around_.now + 1));
+}
+
+/// A 1 in the clock in which a device acknowledges: lost at once.
+void I2cMaster::transmit_first_bit() {
+    state_.awaits_answer = state_.ninth_low = false;
+    state_.collides = true;
+    state_.buffer_empty = kNoCycle;
+    state_.ends = around_.now + 1 + clocks(kStartClocks);
+    plan();
+}
+
+/// The first bit, a 0, was the ninth clock of the byte before (deviation 3).
+void I2cMaster::transmit_behind_ninth(std::uint8_t byte) {
+    state_.received = state_.ninth_low = address_sent_ = false;
+    state_.behind_ninth = true;
+    send(I2cPhaseKind::Write, static_cast<std::uint8_t>(byte << 1 | 1), cosim::kBehindNinthClock,
+         clock_.time_of(around_.now + 1));
 }
 
 void I2cMaster::switch_off() {
@@ -281,6 +334,13 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     }
     const std::uint16_t asked = value & mask & kOneAtATime;
     if (!(con & kI2CxCON["I2CEN"]) || !asked || state.activity != Activity::Idle || self.busy()) return;
+    if (!(asked & (kI2CxCON["SEN"] | kI2CxCON["RCEN"])) && self.finds_low(asked)) {
+        state.collides = true;
+        con = static_cast<std::uint16_t>(con | (asked & kOneAtATime));
+        return self.begin(asked & kI2CxCON["RSEN"]  ? Activity::Restart
+                          : asked & kI2CxCON["PEN"] ? Activity::Stop
+                                                    : Activity::Acknowledge);
+    }
     const cosim::Time start = self.clock_.time_of(self.around_.now + 1);
     if (asked & kI2CxCON["SEN"]) {
         if (!state.owns_bus && self.slave_ && self.slave_->bus_taken()) {  // SDA or SCL is low
@@ -324,6 +384,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         self.send(I2cPhaseKind::Read, 0, state.shared ? cosim::kAcknowledgedLater : std::uint8_t{1}, start);
     } else {
         con |= kI2CxCON["ACKEN"];
+        state.behind_ninth = false;
         state.acknowledged = !(con & kI2CxCON["ACKDT"]);
         if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge);
         state.activity = Activity::Acknowledge;

@@ -11,9 +11,11 @@
 //     A read byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge
 //     that the program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long
 //     as in silicon.
-//  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge, or that no
-//     acknowledge was given, by the stop, repeated start or byte that follows. A byte without its ninth clock
-//     is not acknowledged and costs a clock less; the bits after it are not out of step.
+//  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge by the stop,
+//  repeated
+//     start or byte that follows. Where the program leaves out the ninth clock, the first bit of a byte that
+//     it transmits next is that clock: a 0 acknowledges, and the rest is a clock ahead of the slave's byte. A
+//     second byte whose ninth clock is left out is in step again.
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  What
 //     the program asks for before, with I2CEN = 1 again, begins after that: up to nine clocks late.
@@ -83,6 +85,10 @@ class I2cMaster {
         bool received = false;            ///< a byte, since the address ...
         bool acknowledged = false;        ///< ... by ACKEN, the newest
         bool shared = false;              ///< another master sends the same (cosim/i2c/i2c_shared.h)
+        bool reads = false;               ///< the address byte had R/W = 1
+        bool ninth_low = false;           ///< a device holds SDA low in the clock that comes
+        bool collides = false;            ///< what is under way finds SDA low
+        bool behind_ninth = false;        ///< the ninth clock of the byte read is the next byte's first
         Cycle buffer_empty = kNoCycle;
         Cycle ends = kNoCycle;  ///< of an activity that needs no answer
 
@@ -90,7 +96,7 @@ class I2cMaster {
         void state(Archive& archive) {
             archive.bounded(activity, Activity::Idle, Activity::Acknowledge);
             archive(owns_bus, address_next, awaits_answer, stop_when_answered, received, acknowledged, shared,
-                    buffer_empty, ends);
+                    reads, ninth_low, collides, behind_ninth, buffer_empty, ends);
         }
     };
 
@@ -109,6 +115,10 @@ class I2cMaster {
     bool busy() const { return state_.awaits_answer && !state_.stop_when_answered; }
     void send(cosim::I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cosim::Time start);
     void end_byte_read(cosim::Time start);
+    bool finds_low(std::uint16_t asked);
+    void collide(Cycle at);
+    void transmit_first_bit();
+    void transmit_behind_ninth(std::uint8_t byte);
     void complete(Cycle at);
     void stop_condition_seen(bool stopped);
     void switch_off();
