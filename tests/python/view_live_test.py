@@ -208,6 +208,34 @@ class Live(unittest.TestCase):
         wrong = puckloop("run", SCENARIO, "--view-port", 5000, "--out", self.out)
         self.assertEqual(wrong.returncode, 2)
 
+    def test_one_board_alone(self):
+        image = SOURCE / "firmware/epuck/epuck.elf"
+        self.run = subprocess.Popen([PROGRAM, "exec", image, "--view", "--seconds", "1", "--selector", "3"],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.folder)
+        self.addCleanup(self.end, self.run)
+        address = self.run.stdout.readline().strip()
+        self.ask(address, {"page": "a", "do": "step", "ms": 100})
+        # As the bench's other end would: wake-up and configuration, and the board answers.
+        self.ask(address, {"page": "a", "do": "type", "link": "board.uart2", "from": "board.uart2", "text": "\x01\0\0\0\0"})
+        self.ask(address, {"page": "a", "do": "play", "speed": 0})
+        state = self.wait(address, lambda s: s["over"])
+        self.assertEqual([act["refused"] for act in state["acts"]], [False], state)
+        self.run.send_signal(signal.SIGINT)
+        self.run.communicate(timeout=60)
+        self.assertEqual(self.run.returncode, 0)
+        report = self.report(self.folder / "out/exec_epuck")
+        self.assertEqual(report["links"]["board.uart2"]["from_b"]["uart_frames"], 72)
+        scenario = (self.folder / "out/exec_epuck.toml").read_text()
+        self.assertIn("selector = 3", scenario)
+        self.assertEqual(puckloop("run", "out/exec_epuck.toml", folder=self.folder).returncode, 0)  # to begin one's own from
+        for words, part in ((("--json",), "--json"), (("--uart1", "pty"), "script:FILE"), (("--mcu", "dspic30f6014a"), "--mcu")):
+            wrong = puckloop("exec", image, "--view", *words, folder=self.folder)
+            self.assertEqual(wrong.returncode, 2)
+            self.assertIn(part, wrong.stderr)
+        wrong = puckloop("exec", "nowhere.elf", "--board", "pic", "--view", folder=self.folder)
+        self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1))
+        self.assertFalse((self.folder / "out/exec_nowhere.toml").exists())
+
     def test_the_page_goes_back_looks_and_injects(self):
         if not find_chromium():
             self.skipTest("no chromium is installed")

@@ -76,6 +76,8 @@ fs::path write_board_scenario(const exec::ExecOptions& options, const std::strin
                               const std::vector<std::string>& errata) {
     const std::string& board = options.bench.board;
     if (board.empty()) throw InputError("", "--mcu", "a chip alone has no page", "--board pic, rab or tam");
+    if (!options.image.empty() && !fs::is_regular_file(options.image))
+        throw InputError(options.image, "", "no such file", "a firmware image");
     if (options.image.empty()) throw InputError("", "--view", "there is no image", "a firmware file");
     std::string text =
         "# A board alone, written by `puckloop exec --view`; docs/scenario.md has what can be around it.\n"
