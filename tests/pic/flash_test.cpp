@@ -74,7 +74,7 @@ FaultSpec flash_at(Time at, const std::string& file) {
     return spec;
 }
 
-std::unique_ptr<pic::PicNode> board(const std::vector<FaultSpec>& specs) {
+std::unique_ptr<pic::PicNode> made(const std::vector<FaultSpec>& specs) {
     pic::PicNodeOptions options;
     options.board.name = "robot0.pic";
     options.i2c_linked = false;
@@ -101,7 +101,7 @@ bool same(const std::vector<Message>& a, const std::vector<Message>& b) {
 }  // namespace
 
 TEST_CASE("an image that is flashed runs from then on, and RAM is what it was") {
-    auto node = board({flash_at(kFlashAt, second_file())});
+    auto node = made({flash_at(kFlashAt, second_file())});
     std::vector<Message> out;
     node->advance(kFlashAt, {}, out);
     const std::uint16_t counted = node->chip().peek_data(kCounter);
@@ -126,12 +126,12 @@ TEST_CASE("an image that is flashed runs from then on, and RAM is what it was") 
 TEST_CASE("a board that is flashed goes back and is saved like any other") {
     RandomStream random(4, "flash cuts");
     const std::vector<FaultSpec> specs{flash_at(kFlashAt, second_file())};
-    auto straight = board(specs);
+    auto straight = made(specs);
     std::vector<Message> all;
     straight->advance(kUntil, {}, all);
     for (int round = 0; round < 8; ++round) {
         const Time mark = 15 * kMillisecond + static_cast<Time>(random.below(10 * kMillisecond));
-        auto node = board(specs);
+        auto node = made(specs);
         std::vector<Message> out;
         node->advance(mark, {}, out);
         node->rewindable()->mark();
@@ -143,7 +143,7 @@ TEST_CASE("a board that is flashed goes back and is saved like any other") {
         StateWriter writer(bytes);
         const cosim::StatefulNode& saved = *node;
         saved.state(writer);
-        auto resumed = board(specs);
+        auto resumed = made(specs);
         StateReader reader(bytes);
         resumed->state(reader);
         std::vector<Message> rest = out;
@@ -156,15 +156,15 @@ TEST_CASE("a board that is flashed goes back and is saved like any other") {
 }
 
 TEST_CASE("what is no image for the chip is refused before the board runs") {
-    CHECK_THROWS_AS(board({flash_at(kFlashAt, "/nowhere/a.hex")}), InputError);
+    CHECK_THROWS_AS(made({flash_at(kFlashAt, "/nowhere/a.hex")}), InputError);
     const std::filesystem::path text = tests::scratch_path("flash_text");
     std::ofstream(text) << "no image\n";
-    CHECK_THROWS_AS(board({flash_at(kFlashAt, text.string())}), InputError);
+    CHECK_THROWS_AS(made({flash_at(kFlashAt, text.string())}), InputError);
     FaultSpec other = flash_at(kFlashAt, second_file());
     other.set("sha256", std::string(64, '0'));
-    CHECK_THROWS_WITH(board({other}), Catch::Contains("another image than the one that was flashed"));
+    CHECK_THROWS_WITH(made({other}), Catch::Contains("another image than the one that was flashed"));
     // Of a chip with more flash.
     const std::filesystem::path large = tests::scratch_path("flash_large.hex");
     std::ofstream(large) << image::write_dspic_hex({{0, 0x040100}, {0x2A000, 0x000000}});
-    CHECK_THROWS_AS(board({flash_at(kFlashAt, large.string())}), InputError);
+    CHECK_THROWS_AS(made({flash_at(kFlashAt, large.string())}), InputError);
 }
