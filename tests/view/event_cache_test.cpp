@@ -109,7 +109,7 @@ TEST_CASE("damage to what was kept is found, or is shown, and never more") {
         EventReader events(recording, EventTable::kMost, 0, kNever);
         events.wait();
         const std::string shown = seen(events);
-        if (bytes.size() != whole.size()) CHECK(shown == read);
+        if (bytes.size() < whole.size()) CHECK(shown == read);  // its writer was killed
     }
     fs::remove_all(folder);
 }
