@@ -129,7 +129,7 @@ class StandsStill(InFolder):
         self.assertIn("71 of 72 bytes", text)
         after = [event for event in page.events() if event[0].startswith("robot0.uart") and event[1] > begin]
         self.assertEqual(after, [])
-        self.assertIn(1, json.loads(page.get("serial?from=0,robot0.uart"))["kinds"])  # struck through
+        self.assertIn(1, json.loads(page.get("serial?from=0,robot0.uart"))["k"])  # struck through
         self.assertGreater(self.moved("robot0", 2, 3), 0.04)
         self.assertLess(self.moved("robot0", 4.5, 8), 0.001)
         page.close()
