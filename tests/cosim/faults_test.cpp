@@ -285,10 +285,9 @@ TEST_CASE("radio frames are lost, flipped, delayed and doubled as bytes are") {
     CHECK(bits == 1);
 }
 
-TEST_CASE("octets are kept once and compare by content") {
+TEST_CASE("octets compare by content") {
     const std::vector<std::uint8_t> one{1, 2}, other{1, 3};
     CHECK(Octets(one) == Octets(std::vector<std::uint8_t>{1, 2}));
-    CHECK(Octets(one).view().data() == Octets(std::vector<std::uint8_t>{1, 2}).view().data());
     CHECK_FALSE(Octets(one) == Octets(other));
     CHECK(Octets() == Octets(std::span<const std::uint8_t>{}));
     CHECK(Octets().view().empty());

@@ -15,7 +15,7 @@ namespace {
 
 using exec::debugger::DebuggerOptions;
 
-constexpr double kLongestRun = 1e6;  // seconds
+constexpr double kLongestDebugged = 1e6;  // seconds
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void declare_debug(Command& app, int& status) {
     command
         ->add_option("--seconds", o.seconds,
                      "the run ends there, in simulated time (without it never; of a script after 60)")
-        ->check(seconds_between(0.0, kLongestRun))
+        ->check(seconds_between(0.0, kLongestDebugged))
         ->type_name("TIME");
     command->add_option("--uart1", o.uart[0], "pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     command->add_option("--uart2", o.uart[1], "the same for the second UART");
