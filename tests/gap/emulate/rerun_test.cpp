@@ -2,6 +2,7 @@
 // what was measured, from the TOML file on to the readings.
 
 #include "gap/overlay/overlay.h"
+#include "gap/reading/read_experiment.h"
 #include "scenarios/reader/read_scenario.h"
 #include "selftest/emulate/record.h"
 #include "selftest/emulate/rerun.h"
