@@ -18,9 +18,9 @@ constexpr ActionKey kRemote[]{{"key", Integer}, {"address", Integer}, {"hold"}};
 constexpr ActionForm kForms[]{
     {"move", "move OBJECT [to X, Y | by X, Y] [heading ANGLE] [over TIME]",
      "moves a thing; a robot is carried there", kMove},
-    {"add", "add wall|box|cylinder|lamp|speaker|floor_patch|virtual_wall|virtual_box|virtual_cylinder|virtual_lamp name NAME\n"
-     "KEY VALUE...",
-     "adds a thing; keys as in its table of a scenario", {}},
+    {"add", "add KIND name NAME KEY VALUE...",
+     "adds a thing; keys as in its table of a scenario. KIND is wall, box, cylinder, lamp, speaker, floor_patch,\n"
+     "or, for what only robots sense, virtual_wall, virtual_box, virtual_cylinder or virtual_lamp", {}},
     {"remove", "remove OBJECT", "takes a thing away", {}},
     {"lift", "lift ROBOT", "holds a robot in the air: wheels turn freely, nothing is under it", {}},
     {"put", "put ROBOT [to X, Y] [heading ANGLE]", "puts a lifted robot down", kPut},
