@@ -118,7 +118,7 @@ def seconds_of(pid):
 
 def one_run(scenario, folder, look, span):
     """Processor time of the run, and of the viewer, in seconds; `look`: "driven", "nobody" or "page"."""
-    out = pathlib.Path(folder) / "out"
+    out = pathlib.Path(tempfile.mkdtemp(dir=folder)) / "out"  # no control.json of the run before
     # pylint: disable=consider-using-with
     run = subprocess.Popen([PROGRAM, "run", scenario, "--in-process", "--control", "--duration", str(span), "--out", out],
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
