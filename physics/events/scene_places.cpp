@@ -81,6 +81,9 @@ std::vector<Scene::Listed> Scene::list() const {
 std::string Scene::unknown(std::string_view name) const {
     if (is_booth(model_.description_, name))
         return fmt::format("'{}' is a TAM, which no event is about", name);
+    const auto& trails = model_.description_.virtuals.pheromones;
+    if (index_of(trails, name) < trails.size())
+        return fmt::format("'{}' is a pheromone, which lies where it was laid", name);
     const auto all = list();
     std::vector<std::string_view> names;
     for (const Listed& one : all)

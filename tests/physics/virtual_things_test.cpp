@@ -138,6 +138,16 @@ TEST_CASE("virtual things come, move, change and go while the world runs") {
     CHECK_THAT(scene.apply(wrong), Catch::Contains("there is no robot 'nobody'"));
 }
 
+TEST_CASE("hands do nothing to a trail, and say why") {
+    World world = quiet_room();
+    world.virtuals.pheromones.push_back({.name = "trail"});
+    WorldModel model(world);
+    Scene scene(model);
+    for (const Action& what :
+         {move_to("trail", 0, 0), action(Verb::Remove, "trail"), action(Verb::Lift, "trail")})
+        CHECK(scene.apply(what) == "'trail' is a pheromone, which lies where it was laid");
+}
+
 TEST_CASE("virtual things survive the way to the world's process") {
     World world = quiet_room();
     world.virtuals.boxes.push_back(ghost(0.1, {world.robots[0].name}));
