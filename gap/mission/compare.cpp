@@ -19,7 +19,7 @@ constexpr int kExchanges = 2000;
 constexpr int kDraws = 400;
 constexpr double kShrink = 0.2;     // of the covariance to its diagonal
 constexpr double kSure = 0.05;      // of tests and intervals, one-sided
-constexpr double kWins = 0.9;       // of the draws: one effect is told from the next
+constexpr double kWins = 0.9;       // of the draws: one effect is distinguished from the next
 constexpr double kLeastNats = 3.0;  // a gain below it is taken for none: odds of 20 to 1
 constexpr double kMostShare = 4.0;  // of a change: further than so it was not looked at
 constexpr double kHalf = 0.5;       // explained less: unexplained
@@ -275,15 +275,22 @@ class Effects {
     std::vector<Amount> beside(const Chosen& taken) const {
         std::vector<Amount> amounts;
         std::vector<std::vector<double>> gains;  // by effect, by draw
+        const auto gain_before = [&](const Means& means) {
+            return taken.empty() ? 0.0 : gain_of(means, taken);
+        };
+        const double before = gain_before(whole_);
+        std::vector<double> drawn_before;
+        for (const Means& draw : draws_)
+            drawn_before.push_back(gain_before(draw));
         for (std::size_t effect = 0; effect < count(); ++effect) {
             if (std::find(taken.begin(), taken.end(), effect) != taken.end()) continue;
             Chosen with = taken;
             with.push_back(effect);
             Amount amount{.effect = effect};
-            amount.gain = gain_of(whole_, with) - (taken.empty() ? 0.0 : gain_of(whole_, taken));
+            amount.gain = gain_of(whole_, with) - before;
             auto& drawn_gains = gains.emplace_back();
-            for (const Means& draw : draws_)
-                drawn_gains.push_back(gain_of(draw, with) - (taken.empty() ? 0.0 : gain_of(draw, taken)));
+            for (std::size_t d = 0; d < draws_.size(); ++d)
+                drawn_gains.push_back(gain_of(draws_[d], with) - drawn_before[d]);
             amount.gain_low = lower(drawn_gains, amount.gain);
             fill_shares(amount, with);
             amounts.push_back(amount);

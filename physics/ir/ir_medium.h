@@ -43,8 +43,6 @@ class IrMedium {
     std::size_t board_count() const { return boards_.size(); }
     /// The first so many listen: boards of robots. Those behind them are virtual.
     std::size_t listener_count() const { return listeners_; }
-    /// Of a virtual board, for move().
-    std::size_t body_of(std::size_t board) const { return boards_[board].robot; }
     const std::string& name(std::size_t board) const { return boards_[board].name; }
     const IrParameters& parameters(std::size_t board) const { return boards_[board].model.parameters(); }
     /// False: nothing that any board does can reach this one.

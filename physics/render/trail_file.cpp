@@ -1,11 +1,10 @@
 #include "physics/render/trail_file.h"
 
 #include "base/csv.h"
-#include "base/error.h"
+#include "physics/render/result_rows.h"
 
-#include <fmt/format.h>
-
-#include <fstream>
+#include <string>
+#include <string_view>
 
 namespace puckloop::physics {
 
@@ -17,9 +16,8 @@ struct Row {
     TrailSquare square;
 };
 
-bool parse(std::string_view line, Row& row) {
+bool parse(const std::vector<std::string_view>& fields, Row& row) {
     constexpr std::size_t kFields = 5;
-    const auto fields = csv_cells(line, ',');
     if (fields.size() != kFields) return false;
     row.name = fields[1];
     return csv_number(fields[0], row.seconds) && csv_number(fields[2], row.square.x) &&
@@ -35,18 +33,11 @@ struct Latest {
 }  // namespace
 
 std::vector<TrailSquare> read_trails(const World& world, const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) throw RunError(fmt::format("cannot read {}", file.string()));
     const auto& trails = world.virtuals.pheromones;
     std::vector<Latest> latest(trails.size());
-    std::string line;
-    std::getline(in, line);  // header
-    for (int number = 2; std::getline(in, line); ++number) {
+    for_each_result_row(file, "a trail", [&](const std::vector<std::string_view>& fields) {
         Row row;
-        if (!parse(line, row)) {
-            if (in.peek() == std::ifstream::traits_type::eof()) break;
-            throw RunError(fmt::format("{}: line {}: not a row of a trail", file.string(), number));
-        }
+        if (!parse(fields, row)) return false;
         for (std::size_t i = 0; i < trails.size(); ++i) {
             if (trails[i].name != row.name) continue;
             if (row.seconds > latest[i].seconds) latest[i] = {row.seconds, {}};
@@ -54,7 +45,8 @@ std::vector<TrailSquare> read_trails(const World& world, const std::filesystem::
             row.square.grey = trails[i].grey;
             latest[i].squares.push_back(row.square);
         }
-    }
+        return true;
+    });
     std::vector<TrailSquare> all;
     for (const Latest& trail : latest)
         all.insert(all.end(), trail.squares.begin(), trail.squares.end());

@@ -77,7 +77,7 @@ inline std::size_t virtual_board_signal(std::size_t board, std::size_t value) {
     return kLast - (kPoseSignals * board + value);
 }
 inline bool is_virtual_board_signal(std::size_t id) {
-    return id > virtual_board_signal(kMostVirtualBoards - 1, kPoseSignals - 1) - 1;
+    return id >= virtual_board_signal(kMostVirtualBoards - 1, kPoseSignals - 1);
 }
 
 /// The world publishes poses, and a medium is needed, when any robot carries a board.

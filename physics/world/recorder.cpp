@@ -26,6 +26,13 @@ std::string sensors_header() {
     return header + ",steps_left,steps_right";
 }
 
+/// Are a trail's rows asked for at this step?
+bool is_due(const WorldModel& world, const PheromoneField& trail) {
+    const auto every =
+        static_cast<std::uint64_t>(std::llround(trail.description().record_every / kStepSeconds));
+    return every > 0 && world.steps_done() % every == 0;
+}
+
 /// No "-0.000000".
 double tidy(double value) {
     return std::abs(value) < 5e-7 ? 0.0 : value;
@@ -84,19 +91,13 @@ Recorder::Recorder(const WorldModel& world)
 
 void Recorder::after_step(const WorldModel& world) {
     if (world.steps_done() % period_steps_ == 0) write(world);
-    for (const PheromoneField& trail : world.trails()) {
-        const auto every = std::llround(trail.description().record_every / kStepSeconds);
-        if (every > 0 && world.steps_done() % static_cast<std::uint64_t>(every) == 0)
-            write_trail(world, trail);
-    }
+    for (const PheromoneField& trail : world.trails())
+        if (is_due(world, trail)) write_trail(world, trail);
 }
 
 void Recorder::end(const WorldModel& world) {
-    for (const PheromoneField& trail : world.trails()) {
-        const auto every = std::llround(trail.description().record_every / kStepSeconds);
-        const bool written = every > 0 && world.steps_done() % static_cast<std::uint64_t>(every) == 0;
-        if (!written) write_trail(world, trail);
-    }
+    for (const PheromoneField& trail : world.trails())
+        if (!is_due(world, trail)) write_trail(world, trail);
 }
 
 /// Squares that hold something to be seen: their middles.

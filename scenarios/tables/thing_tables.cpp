@@ -121,26 +121,43 @@ void read_patch(Reader& reader, physics::Patch& patch) {
     }
 }
 
+namespace {
+
+/// As the real thing, which `read` reads, and who senses it.
+template <class Thing>
+void read_virtual(Reader& reader, physics::Virtual<Thing>& thing, void (*read)(Reader&, Thing&)) {
+    read(reader, thing);
+    thing.robots = reader.texts("robots");
+}
+
+void refuse_mass(Reader& reader, const char* what) {
+    if (reader.has("mass"))
+        reader.fail("mass", fmt::format("a virtual {} has none: nothing pushes it", what));
+}
+
+}  // namespace
+
 void read_virtual_wall(Reader& reader, physics::Virtual<physics::Wall>& wall) {
-    read_wall(reader, wall);
-    wall.robots = reader.texts("robots");
+    read_virtual(reader, wall, read_wall);
 }
 
 void read_virtual_box(Reader& reader, physics::Virtual<physics::Box>& box) {
-    if (reader.has("mass")) reader.fail("mass", "a virtual box has none: nothing pushes it");
-    read_box(reader, box);
-    box.robots = reader.texts("robots");
+    refuse_mass(reader, "box");
+    read_virtual(reader, box, read_box);
 }
 
 void read_virtual_cylinder(Reader& reader, physics::Virtual<physics::Cylinder>& cylinder) {
-    if (reader.has("mass")) reader.fail("mass", "a virtual cylinder has none: nothing pushes it");
-    read_cylinder(reader, cylinder);
-    cylinder.robots = reader.texts("robots");
+    refuse_mass(reader, "cylinder");
+    read_virtual(reader, cylinder, read_cylinder);
 }
 
 void read_virtual_lamp(Reader& reader, physics::Virtual<physics::Lamp>& lamp) {
-    read_lamp(reader, lamp);
-    lamp.robots = reader.texts("robots");
+    read_virtual(reader, lamp, read_lamp);
+}
+
+std::string read_led(Reader& reader) {
+    return reader.choice(
+        "led", "", {"led0", "led1", "led2", "led3", "led4", "led5", "led6", "led7", "led_front", "led_body"});
 }
 
 void read_virtual_board(Reader& reader, physics::VirtualBoard& board) {
@@ -164,10 +181,7 @@ void read_virtual_board(Reader& reader, physics::VirtualBoard& board) {
 
 void read_pheromone(Reader& reader, physics::Pheromone& pheromone) {
     pheromone.robots = reader.texts("robots");
-    if (reader.has("led"))
-        pheromone.led = reader.choice(
-            "led", "",
-            {"led0", "led1", "led2", "led3", "led4", "led5", "led6", "led7", "led_front", "led_body"});
+    if (reader.has("led")) pheromone.led = read_led(reader);
     pheromone.radius = reader.quantity("radius", Dimension::Length, pheromone.radius);
     pheromone.fill_time = reader.quantity("fill_time", Dimension::Time, pheromone.fill_time);
     pheromone.half_life = reader.quantity("half_life", Dimension::Time, pheromone.half_life);

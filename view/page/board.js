@@ -54,20 +54,7 @@ export class BoardPart {
     this.drawn = '';
     this.input.hidden = this.flasher.hidden = this.counter.hidden = this.board === '';
     for (const part of [this.where, this.values, this.code, this.stack, this.interrupts]) part.replaceChildren();
-    this.wanted = true;
-    this.asking ||= this.askToLook();
-    return this.asking;
-  }
-  // One after the other: requests side by side may arrive in another order, and the last one counts.
-  async askToLook() {
-    try {
-      while (this.wanted) {
-        this.wanted = false;
-        await this.ask({ do: 'look', board: this.board, items: this.items });
-      }
-    } finally {
-      this.asking = null;
-    }
+    return this.ask({ do: 'look', board: this.board, items: this.items });
   }
   draw(look) {
     if (!look || look.board !== this.board || look.values.length !== this.items.length) return;

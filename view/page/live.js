@@ -30,6 +30,7 @@ export class Live {
     this.state = { time_s: 0, playing: false, speed: 1, over: false, why: '', driver: '', acts: [], epoch: 0, look: null };
     this.offsets = { 'new-robots': 0, 'new-objects': 0 };
     this.atEdge = true;
+    this.sent = Promise.resolve();
     run.paths.length = 0;
   }
   /** The run went back: what is known of it is read again. */
@@ -64,8 +65,13 @@ export class Live {
     this.run.duration = Math.max(this.edge(), 1e-3);
     this.changed();
   }
-  /** What is refused is an Error. */
-  async ask(request) {
+  /** What is refused is an Error. One after the other: side by side they may arrive in another order. */
+  ask(request) {
+    const asked = this.sent.then(() => this.post(request));
+    this.sent = asked.catch(() => {});
+    return asked;
+  }
+  async post(request) {
     const answer = await fetch('drive', { method: 'POST', headers: { 'Content-Type': 'application/json' },
       body: JSON.stringify({ page: this.page, ...request }) });
     if (!answer.ok) throw new Error(await answer.text());

@@ -183,19 +183,10 @@ void ChipFaults::flip(const MemoryPlace& place, std::uint32_t mask) {
         in.io.raw(address) = static_cast<std::uint8_t>(in.io.raw(address) ^ left);
 }
 
-void ChipFaults::read_image(const std::string& file, const std::string& sha256) {
-    if (images_.contains(file)) return;
+image::AvrImage ChipFaults::load(const std::string& file, const std::string& sha256) const {
     image::AvrImage image = image::load_avr_image(file, chip_.inside().device.image_part());
     image::check_hash(file, image.sha256, sha256);
-    images_.emplace(file, std::move(image));
-}
-
-void ChipFaults::program(const std::string& file) {
-    chip_.program(images_.at(file));
-}
-
-void ChipFaults::name_places(const std::string& file) {
-    chip_.name_places(images_.at(file));
+    return image;
 }
 
 std::string_view ChipFaults::name(const MemoryPlace& place) const {

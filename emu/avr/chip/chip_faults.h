@@ -10,17 +10,16 @@
 //     two-wire interface) the flag stays, and nothing comes of it until the next event of the source.
 
 #include "emu/avr/chip/chip.h"
-#include "emu/chip/faults/chip_access.h"
+#include "emu/chip/faults/image_access.h"
 #include "emu/image/avr_image.h"
 
-#include <map>
 #include <string>
 
 namespace puckloop::avr {
 
-class ChipFaults : public chip::ChipAccess {
+class ChipFaults : public chip::ImageAccess<Chip, image::AvrImage> {
   public:
-    explicit ChipFaults(Chip& chip) : chip_(chip) {}
+    explicit ChipFaults(Chip& chip) : ImageAccess(chip) {}
 
     std::uint32_t pc() const override { return chip_.pc(); }
     bool stopped() const override { return chip_.stopped_at().has_value(); }
@@ -38,9 +37,6 @@ class ChipFaults : public chip::ChipAccess {
     std::uint32_t bits(const chip::MemoryPlace& place) const override;
     std::uint32_t read(const chip::MemoryPlace& place) const override;
     void flip(const chip::MemoryPlace& place, std::uint32_t mask) override;
-    void read_image(const std::string& file, const std::string& sha256) override;
-    void program(const std::string& file) override;
-    void name_places(const std::string& file) override;
     std::string_view name(const chip::MemoryPlace& place) const override;
 
     std::optional<int> vector(std::string_view source) const override;
@@ -48,11 +44,10 @@ class ChipFaults : public chip::ChipAccess {
     void watch_interrupts(std::span<const int> vectors, chip::InterruptTime when) override;
 
   private:
+    image::AvrImage load(const std::string& file, const std::string& sha256) const override;
     static bool passes(void* owner, int vector);
 
-    Chip& chip_;
     chip::InterruptTime when_;
-    std::map<std::string, image::AvrImage> images_;  ///< by file
 };
 
 }  // namespace puckloop::avr

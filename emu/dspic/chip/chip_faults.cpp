@@ -188,20 +188,11 @@ void ChipFaults::flip_register(std::uint16_t address, std::uint16_t mask) {
         in.sfr.raw(address) = static_cast<std::uint16_t>(in.sfr.raw(address) ^ left);
 }
 
-void ChipFaults::read_image(const std::string& file, const std::string& sha256) {
-    if (images_.contains(file)) return;
+image::Image ChipFaults::load(const std::string& file, const std::string& sha256) const {
     image::Image image = image::load_image(file);
     image::check_fits(image, image::find_device(chip_.inside().device.name));
     image::check_hash(file, image.sha256, sha256);
-    images_.emplace(file, std::move(image));
-}
-
-void ChipFaults::program(const std::string& file) {
-    chip_.program(images_.at(file));
-}
-
-void ChipFaults::name_places(const std::string& file) {
-    chip_.name_places(images_.at(file));
+    return image;
 }
 
 std::string_view ChipFaults::name(const MemoryPlace& place) const {

@@ -1,18 +1,17 @@
 #pragma once
 // What faults do to a dsPIC: resets, hangs, another clock, flipped bits, interrupts out of nowhere.
 
-#include "emu/chip/faults/chip_access.h"
+#include "emu/chip/faults/image_access.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
 
-#include <map>
 #include <string>
 
 namespace puckloop::dspic {
 
-class ChipFaults : public chip::ChipAccess {
+class ChipFaults : public chip::ImageAccess<Chip, image::Image> {
   public:
-    explicit ChipFaults(Chip& chip) : chip_(chip) {}
+    explicit ChipFaults(Chip& chip) : ImageAccess(chip) {}
 
     std::uint32_t pc() const override { return chip_.pc(); }
     bool stopped() const override { return chip_.stopped_at().has_value(); }
@@ -30,9 +29,6 @@ class ChipFaults : public chip::ChipAccess {
     std::uint32_t bits(const chip::MemoryPlace& place) const override;
     std::uint32_t read(const chip::MemoryPlace& place) const override;
     void flip(const chip::MemoryPlace& place, std::uint32_t mask) override;
-    void read_image(const std::string& file, const std::string& sha256) override;
-    void program(const std::string& file) override;
-    void name_places(const std::string& file) override;
     std::string_view name(const chip::MemoryPlace& place) const override;
 
     std::optional<int> vector(std::string_view source) const override;
@@ -40,12 +36,11 @@ class ChipFaults : public chip::ChipAccess {
     void watch_interrupts(std::span<const int> vectors, chip::InterruptTime when) override;
 
   private:
+    image::Image load(const std::string& file, const std::string& sha256) const override;
     static bool passes(void* owner, int irq, Cycle now);
     void flip_register(std::uint16_t address, std::uint16_t mask);
 
-    Chip& chip_;
     chip::InterruptTime when_;
-    std::map<std::string, image::Image> images_;  ///< by file
 };
 
 }  // namespace puckloop::dspic

@@ -196,9 +196,7 @@ Condition read_condition(const std::string& file, const std::string& where, cons
         when.distance = length("travels", kShortest);
     } else if (reader.has("led")) {
         when.kind = Condition::Kind::Led;
-        when.other = reader.choice(
-            "led", "",
-            {"led0", "led1", "led2", "led3", "led4", "led5", "led6", "led7", "led_front", "led_body"});
+        when.other = read_led(reader);
         when.on = reader.flag("on", true);
     } else {
         when.kind = Condition::Kind::Wheels;
