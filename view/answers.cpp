@@ -129,12 +129,15 @@ std::optional<Content> Answers::get(std::string_view target) const {
         if (name == "head") return Content{kJson, recording_.head()};
         if (name == "status") return Content{kJson, events.status()};
         if (name == "poses") return Content{kBinary, recording_.poses()};
+        if (name == "trails") return Content{kBinary, recording_.trails()};
         if (name == "beams") return Content{kBinary, events.beams()};
         if (name == "cameras") return Content{kJson, camera_list(recording_.folder(), robot_names())};
         if (name == "drive" && driver_ != nullptr) return Content{kJson, driver_->state()};
         if (name == "possible" && driver_ != nullptr) return Content{kJson, driver_->possible()};
         return std::nullopt;
     }
+    // The time is the page's own business.
+    if (name.empty() && parameter(query, "t")) return get("");
     if (name == "texts") return texts(events, query);
     if (name == "serial") return serial(query);
     if (name == "picture") return picture(query);
@@ -147,8 +150,6 @@ std::optional<Content> Answers::get(std::string_view target) const {
         return *number < recording_.robots() ? std::optional(Content{kBinary, recording_.sensors(*number)})
                                              : std::nullopt;
     if (name == "events") return Content{kBinary, events.table().block(*number, kMostEvents)};
-    if (driver_ != nullptr && (name == "new-robots" || name == "new-objects"))
-        return Content{"text/csv; charset=utf-8", recording_.tail(name == "new-robots", *number)};
     if (name == "leds") return Content{kBinary, events.leds(*number, kMostEvents)};
     return std::nullopt;
 }

@@ -18,6 +18,7 @@ namespace puckloop::view {
 struct Content {
     std::string type;  ///< media type
     std::string body;
+    bool own_style = false;  ///< a page with its style in itself; a browser refuses it otherwise
 };
 
 class Answers {

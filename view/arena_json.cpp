@@ -50,7 +50,7 @@ std::string arena_json(const physics::World& world) {
                  patches = ordered_json::array(), lamps = ordered_json::array(),
                  speakers = ordered_json::array(), robots = ordered_json::array(),
                  booths = ordered_json::array(), corners = ordered_json::array(),
-                 virtuals = ordered_json::array();
+                 virtuals = ordered_json::array(), trails = ordered_json::array();
     for (const physics::Point& corner : world.arena.corners)
         corners.push_back({corner.x, corner.y});
     for (const physics::Shape& wall : physics::arena_walls(world.arena))
@@ -70,7 +70,15 @@ std::string arena_json(const physics::World& world) {
     for (const physics::Lamp& lamp : world.lamps)
         lamps.push_back({{"name", lamp.name}, {"x", lamp.x}, {"y", lamp.y}, {"intensity", lamp.intensity}});
     for (const physics::Speaker& speaker : world.speakers)
-        speakers.push_back({{"name", speaker.name}, {"x", speaker.x}, {"y", speaker.y}});
+        speakers.push_back({{"name", speaker.name},
+                            {"x", speaker.x},
+                            {"y", speaker.y},
+                            {"on", speaker.on},
+                            {"off", speaker.off},
+                            {"every", speaker.every},
+                            {"times", speaker.times}});
+    for (const physics::Pheromone& trail : world.virtuals.pheromones)
+        trails.push_back({{"name", trail.name}, {"side", trail.cell}, {"grey", trail.grey}});
     for (const physics::Robot& robot : world.robots) {
         const auto body = parameters_of(world, robot).robot;
         robots.push_back({{"name", robot.name},
@@ -96,7 +104,8 @@ std::string arena_json(const physics::World& world) {
                             {"fixed", fixed},       {"things", things},
                             {"patches", patches},   {"lamps", lamps},
                             {"speakers", speakers}, {"robots", robots},
-                            {"booths", booths},     {"virtuals", virtuals}};
+                            {"booths", booths},     {"virtuals", virtuals},
+                            {"trails", trails}};
     return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr int kCacheFormat = 1;
+constexpr int kCacheFormat = 2;
 constexpr std::size_t kLongestHeader = 8U << 20;
 
 struct FileCloser {

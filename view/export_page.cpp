@@ -102,6 +102,7 @@ std::string exported_page(const Recording& recording, EventReader& events, std::
     add("poses", recording.poses());
     add("status", events.status());
     add("beams", events.beams());
+    add("trails", recording.trails());
     std::vector<std::string> robots(recording.stations().begin(),
                                     recording.stations().begin() +
                                         static_cast<std::ptrdiff_t>(recording.robots()));

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
@@ -53,10 +54,21 @@ std::string joined(const tools::DecodedFrame& frame) {
     return text;
 }
 
+// Numbers of what is lit or sounds, beside those of the ring's LEDs, body and front.
+constexpr std::uint8_t kTurret = 10, kSpeaker = 19;
+constexpr std::array<std::string_view, 3> kColours{"red", "green", "blue"};
+
 /// LED of a signal's name; nothing for other signals.
 std::optional<std::uint8_t> led_of(std::string_view signal) {
     if (signal == "led_body") return std::uint8_t{8};
     if (signal == "led_front") return std::uint8_t{9};
+    if (signal == "speaker") return kSpeaker;
+    // "rgb0_red" .. "rgb2_blue"
+    if (signal.size() > 5 && signal.starts_with("rgb") && signal[3] >= '0' && signal[3] <= '2' &&
+        signal[4] == '_')
+        for (std::size_t colour = 0; colour < kColours.size(); ++colour)
+            if (signal.substr(5) == kColours[colour])
+                return static_cast<std::uint8_t>(kTurret + 3 * (signal[3] - '0') + static_cast<int>(colour));
     if (signal.size() == 4 && signal.starts_with("led") && signal[3] >= '0' && signal[3] <= '7')
         return static_cast<std::uint8_t>(signal[3] - '0');
     return std::nullopt;
@@ -200,9 +212,24 @@ void EventReader::read_resets() {
 
 void EventReader::led(const std::string& from, const std::string& signal, double time, double value) {
     const auto led = led_of(signal);
-    if (!led || !from.ends_with(".pic")) return;
+    const bool turret = led && *led >= kTurret && *led != kSpeaker;
+    if (!led || !from.ends_with(turret ? ".i2c" : ".pic")) return;
     const std::size_t robot = station(robot_of(from));
     if (robot >= recording_.robots()) return;
+    if (*led == kSpeaker) return speaker(robot, time, value);
+    constexpr double kBrightest = 255;
+    add_led(robot, *led, time,
+            turret ? static_cast<std::uint8_t>(std::clamp(value, 0.0, kBrightest))
+                   : std::uint8_t{value != 0.0});
+}
+
+void EventReader::speaker(std::size_t robot, double time, double value) {
+    speakers_[robot].sample(time, value == 0.0, [&](double at, bool plays) {
+        add_led(robot, kSpeaker, at, std::uint8_t{plays});
+    });
+}
+
+void EventReader::add_led(std::size_t robot, std::uint8_t led, double time, std::uint8_t value) {
     const std::lock_guard lock(mutex_);
     if (leds_.leds.size() >= kMostLeds) {
         ++leds_.left_out;
@@ -210,8 +237,8 @@ void EventReader::led(const std::string& from, const std::string& signal, double
     }
     leds_.times.push_back(time);
     leds_.robots.push_back(static_cast<std::uint16_t>(robot));
-    leds_.leds.push_back(*led);
-    leds_.values.push_back(value != 0.0 ? 1 : 0);
+    leds_.leds.push_back(led);
+    leds_.values.push_back(value);
 }
 
 void EventReader::read_trace() {
@@ -250,6 +277,10 @@ void EventReader::read_trace() {
                       if (const auto* signal = std::get_if<cosim::Signal>(&row.payload))
                           led(row.from, row.signal, cosim::to_seconds(row.time), signal->value);
                   }});
+    for (auto& [robot, spells] : speakers_)
+        spells.settle(duration, [&, robot = robot](double at, bool plays) {
+            add_led(robot, kSpeaker, at, std::uint8_t{plays});
+        });
 }
 
 void EventReader::read_rab() {

@@ -5,10 +5,12 @@
 #include "view/event_cache.h"
 #include "view/event_table.h"
 #include "view/recording.h"
+#include "view/sound_spells.h"
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -37,8 +39,8 @@ class EventReader {
     /// JSON: generation, events, left_out, tracks, done, progress (0..1), what is read now, what was wrong.
     std::string status() const;
     /// LEDs from change `first` on: four 32-bit numbers (first, how many follow, how many in all, 0), then
-    /// times (64-bit floats, s), robots (16 bits), LEDs (8 bits: 0..7 ring, 8 body, 9 front), values (8
-    /// bits).
+    /// times (64-bit floats, s), robots (16 bits), LEDs (8 bits: 0..7 ring, 8 body, 9 front, 10..18 the
+    /// turret's three, each red, green and blue, 19 the speaker plays), values (8 bits).
     std::string leds(std::size_t first, std::size_t most) const;
     /// Light between stations: two 32-bit numbers (count, 0), then begins (64-bit floats, s), durations
     /// (32-bit floats), senders, receivers (16 bits each), fates (8 bits).
@@ -63,6 +65,8 @@ class EventReader {
     /// Stations by number.
     void add_beam(double begin, double duration, std::size_t sender, std::size_t receiver, std::uint8_t fate);
     void led(const std::string& from, const std::string& signal, double time, double value);
+    void speaker(std::size_t robot, double time, double value);
+    void add_led(std::size_t robot, std::uint8_t led, double time, std::uint8_t value);
     void check_stop() const {
         if (stop_) throw Stopped{};
     }
@@ -80,6 +84,7 @@ class EventReader {
     std::exception_ptr error_;
     LedEvents leds_;
     BeamEvents beams_;
+    std::map<std::size_t, SoundSpells> speakers_;  // by robot
     std::thread thread_;
 };
 

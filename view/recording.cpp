@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "physics/render/arena_file.h"
+#include "physics/render/result_rows.h"
 #include "physics/world/booth_record.h"
 #include "view/arena_json.h"
 #include "view/bytes.h"
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -125,6 +127,8 @@ void Recording::read_arena() {
     }
     const physics::World world = physics::read_arena_file(file);
     arena_ = arena_json(world);
+    for (const physics::Pheromone& trail : world.virtuals.pheromones)
+        trails_.push_back(trail.name);
     for (const physics::Robot& robot : world.robots)
         stations_.push_back(robot.name);
     robots_ = stations_.size();
@@ -208,6 +212,38 @@ std::string Recording::poses() const {
             for (const physics::PathPoint& point : points)
                 append_number(out, static_cast<float>(point.*part));
     }
+    return out;
+}
+
+std::string Recording::trails() const {
+    std::vector<double> times;
+    std::vector<std::uint16_t> of;
+    std::array<std::vector<float>, 3> values;
+    const fs::path file = folder_ / "pheromones.csv";
+    if (!trails_.empty() && is_there(file))
+        physics::for_each_result_row(file, "a trail", [&](const std::vector<std::string_view>& cells) {
+            double time = 0.0;
+            std::array<double, 3> square{};
+            const auto trail = cells.size() == square.size() + 2
+                                   ? std::find(trails_.begin(), trails_.end(), cells[1])
+                                   : trails_.end();
+            bool row = trail != trails_.end() && csv_number(cells[0], time);
+            for (std::size_t i = 0; row && i < square.size(); ++i)
+                row = csv_number(cells[i + 2], square[i]);
+            if (!row || times.size() >= kMostSquares) return row;
+            times.push_back(time);
+            of.push_back(static_cast<std::uint16_t>(trail - trails_.begin()));
+            for (std::size_t i = 0; i < square.size(); ++i)
+                values[i].push_back(static_cast<float>(square[i]));
+            return true;
+        });
+    std::string out;
+    append_number(out, static_cast<std::uint32_t>(times.size()));
+    append_number(out, std::uint32_t{0});
+    append_numbers(out, std::span<const double>(times));
+    append_numbers(out, std::span<const std::uint16_t>(of));
+    for (const auto& part : values)
+        append_numbers(out, std::span<const float>(part));
     return out;
 }
 

@@ -36,11 +36,17 @@ class Recording {
     /// first. At most kMostRows rows, every so many-th of the file. Throws RunError for damaged rows.
     std::string sensors(std::size_t robot) const;
 
+    /// Of the pheromones of head()'s arena, in that order: the number of squares and 0 (32 bits), then times
+    /// (s, 64-bit floats), trails (16 bits), x, y (m) and strengths (0..1), 32-bit floats; at most
+    /// kMostSquares, the first.
+    std::string trails() const;
+
     /// Whole lines of trajectory.csv (`robots`) or objects.csv from byte `from` on, at most kMostTail bytes.
     std::string tail(bool robots, std::size_t from) const;
 
     static constexpr std::size_t kMostRows = 20'000;
     static constexpr std::size_t kMostTail = 1 << 20;
+    static constexpr std::size_t kMostSquares = 1'000'000;
 
   private:
     void read_report();
@@ -57,6 +63,7 @@ class Recording {
     physics::Paths paths_;
     std::size_t robot_paths_ = 0;          // of paths_, the first
     std::string report_, arena_, booths_;  // JSON of head(); empty: none
+    std::vector<std::string> trails_;      // names of pheromones
 };
 
 }  // namespace puckloop::view

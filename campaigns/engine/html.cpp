@@ -1,5 +1,6 @@
 #include "campaigns/engine/html.h"
 
+#include "base/html_page.h"
 #include "base/svg.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/engine/table.h"
@@ -15,15 +16,11 @@ namespace puckloop::faults {
 
 namespace {
 
-constexpr const char* kHead = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Fault campaign {}</title><style>
-body{{font:14px/1.4 system-ui,sans-serif;margin:2em;color:#222}} h2{{margin-top:1.6em}} h3{{margin:1.4em 0 .4em}}
-table{{border-collapse:collapse}} td,th{{border:1px solid #ccc;padding:2px 6px;text-align:left;vertical-align:top}}
-code{{background:#f3f3f3;padding:1px 3px;overflow-wrap:anywhere}} .copy{{user-select:all;display:inline-block;min-width:24em}} .wide{{overflow-x:auto}}
-.heat td{{padding:0;text-align:center;font-size:12px}} .heat td a{{display:block;min-width:22px;line-height:22px;color:inherit;text-decoration:none}}
-.heat th{{font-weight:normal;font-size:12px;white-space:nowrap}} .heat thead th{{writing-mode:vertical-rl}}
-tr:target{{outline:3px solid #1565c0}}
-{}</style></head><body>
+constexpr std::string_view kStyle = R"(
+.copy{user-select:all;display:inline-block;min-width:24em}
+.heat td{padding:0;text-align:center;font-size:12px} .heat td a{display:block;min-width:22px;line-height:22px;color:inherit;text-decoration:none}
+.heat th{font-weight:normal;font-size:12px;white-space:nowrap} .heat thead th{writing-mode:vertical-rl}
+tr:target{outline:3px solid var(--strong)}
 )";
 
 /// A short sign and a colour for each outcome; the sign serves who cannot see the colours apart.
@@ -156,21 +153,34 @@ std::string findings_html(const Results& results) {
     return html + "</table>\n";
 }
 
-std::string cases_html(const Results& results) {
+/// How a case is named in the table: with a link to its page where reports are served.
+std::string case_name(const CaseResult& result, const PageOfCase& page) {
+    const std::string link = page ? page(result.one) : std::string();
+    return link.empty() ? std::to_string(result.one.id)
+                        : fmt::format("<a href=\"{}\">{}</a>", escaped(link), result.one.id);
+}
+
+std::string cases_html(const Results& results, const PageOfCase& page) {
     std::string html =
-        "<h2>Cases</h2>\n<p>Any of them runs again with its number at the end of a replay command.</p>\n"
+        fmt::format(
+            "<h2>Cases</h2>\n<p>Any of them runs again with its number at the end of a replay command. "
+            "{}</p>\n",
+            page ? "A number opens the case in the viewer, where its first fault begins."
+                 : fmt::format("<code>puckloop view {}</code> serves this page with numbers that open "
+                               "their case in the viewer.",
+                               escaped(results.out.string()))) +
         "<table><tr><th>case</th><th>phase</th><th>faults</th><th>seed</th><th>outcome</th>"
         "<th>fired</th><th>recovery, s</th><th>departure, m</th><th>what was seen</th></tr>\n";
     for (const CaseResult& result : results.results)
         html +=
-            fmt::format("<tr id=case{0}><td>{0}</td><td>{1}</td><td>{2}</td><td>{3}</td><td "
+            fmt::format("<tr id=case{0}><td>{10}</td><td>{1}</td><td>{2}</td><td>{3}</td><td "
                         "class={4}>{5}</td><td>{6}</td>"
                         "<td>{7}</td><td>{8:.4f}</td><td>{9}</td></tr>\n",
                         result.one.id, result.one.phase, escaped(in_one_line(result.one.faults)),
                         result.one.seed, look_of(result.verdict.outcome).name,
                         name_of(result.verdict.outcome), fmt::join(result.verdict.fired, "+"),
                         result.verdict.recovery_s ? fmt::format("{:.3f}", *result.verdict.recovery_s) : "",
-                        result.verdict.departure_m, escaped(result.verdict.detail));
+                        result.verdict.departure_m, escaped(result.verdict.detail), case_name(result, page));
     html += "</table>\n";
     if (results.pruned.empty()) return html;
     html += "<h2>Pruned</h2>\n<table><tr><th>case</th><th>faults</th><th>why</th></tr>\n";
@@ -192,14 +202,14 @@ std::string subject(const Campaign& campaign) {
 
 }  // namespace
 
-std::string html_text(const Results& results) {
-    std::string style;
+std::string html_text(const Results& results, const PageOfCase& page) {
+    std::string style(kStyle);
     for (const Look& look : kLooks)
         style += fmt::format(".{}{{background:{};color:{}}}\n", look.name, look.colour,
                              std::string_view("pclh").find(look.name[0]) != std::string_view::npos ? "#fff"
                                                                                                    : "#222");
     const std::string name = escaped(results.campaign.file.filename().string());
-    std::string html = fmt::format(kHead, name, style);
+    std::string html = html_head("Fault campaign " + results.campaign.file.filename().string(), style);
     html += fmt::format("<h1>Fault campaign {}</h1>\n<p>{}. Each case is one run with one or two faults, "
                         "compared with a nominal "
                         "run that has none. Exact definitions of the outcomes are in docs/faults.md.</p>\n"
@@ -221,7 +231,7 @@ std::string html_text(const Results& results) {
                                      "its case.</p>\n";
     for (const Sweep& sweep : results.campaign.sweeps)
         html += heat_map(sweep, results);
-    return html + cases_html(results) + "</body></html>\n";
+    return html + cases_html(results, page) + "</body></html>\n";
 }
 
 void write_html(const Results& results) {

@@ -103,6 +103,7 @@ class Conduct {
                 "--fresh to drop them, or --out with another folder");
         store_->plan(experiment_, runs_);
         if (!before) store_->set_note("identity", now);
+        store_->set_note("file", experiment_.file.string());
     }
 
     void run_what_is_left() {

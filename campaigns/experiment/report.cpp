@@ -1,5 +1,6 @@
 #include "campaigns/experiment/report.h"
 
+#include "base/html_page.h"
 #include "base/quantile.h"
 #include "base/svg.h"
 #include "campaigns/experiment/box_plot.h"
@@ -13,15 +14,6 @@
 namespace puckloop::swarm {
 
 namespace {
-
-constexpr const char* kHead = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Experiment {0}</title><style>
-body{{font:14px/1.4 system-ui,sans-serif;margin:2em;color:#222}} h2{{margin-top:1.6em}}
-table{{border-collapse:collapse}} td,th{{border:1px solid #ccc;padding:2px 6px;text-align:left;vertical-align:top}}
-td.n{{text-align:right}} .wide{{overflow-x:auto}}
-</style></head><body>
-<h1>Experiment {0}</h1>
-)";
 
 std::string number(double value) {
     return std::isfinite(value) ? fmt::format("<td class=n>{:.6g}</td>", value) : std::string("<td></td>");
@@ -145,6 +137,22 @@ std::string agreement_html(const Agreement& agreement, const std::filesystem::pa
            list("In the reference only", agreement.only_there);
 }
 
+/// With links to their pages.
+std::string all_runs(const Findings& findings, const PageOfRun& page) {
+    std::string html = "<h2>Runs</h2>\n<p>A number opens the run in the viewer.</p>\n<table>" +
+                       head_row({"run", "program", "condition", "seed", "score"});
+    for (const Run& run : runs_of(findings.experiment)) {
+        const auto found = findings.results.find(run.id);
+        if (found == findings.results.end()) continue;
+        html += fmt::format("<tr><td class=n><a href=\"{}\">{}</a></td>", escaped(page(run)), run.id) +
+                text_cell(findings.experiment.programs[run.program].name) +
+                text_cell(findings.experiment.conditions[run.condition].name) +
+                fmt::format("<td class=n>{}</td>", run.seed) +
+                (found->second.score ? number(*found->second.score) : text_cell("none")) + "</tr>\n";
+    }
+    return html + "</table>\n";
+}
+
 std::string failures(const Findings& findings) {
     std::string html;
     for (const Run& run : runs_of(findings.experiment)) {
@@ -164,9 +172,10 @@ std::string failures(const Findings& findings) {
 
 std::string report_html(const Findings& findings, const std::vector<Cell>& cells,
                         const std::vector<Comparison>& comparisons, const std::optional<Agreement>& agreement,
-                        const std::filesystem::path& against) {
+                        const std::filesystem::path& against, const PageOfRun& page) {
     const Experiment& experiment = findings.experiment;
-    std::string html = fmt::format(kHead, escaped(experiment.file.filename().string()));
+    const std::string title = "Experiment " + experiment.file.filename().string();
+    std::string html = html_head(title) + fmt::format("<h1>{}</h1>\n", escaped(title));
     double wall = 0.0;
     for (const auto& [id, result] : findings.results)
         wall += result.wall;
@@ -177,7 +186,9 @@ std::string report_html(const Findings& findings, const std::vector<Cell>& cells
                         duration_text(wall));
     html += plots(findings, cells) + scores(findings, cells) + tests(comparisons);
     if (agreement) html += agreement_html(*agreement, against);
-    return html + failures(findings) + "</body></html>\n";
+    html += failures(findings);
+    if (page) html += all_runs(findings, page);
+    return html + "</body></html>\n";
 }
 
 }  // namespace puckloop::swarm

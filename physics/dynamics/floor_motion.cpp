@@ -18,16 +18,20 @@ double done(double part) {
 }  // namespace
 
 FloorMotion::FloorMotion(const Parameters& parameters, RandomStream pushes)
-    : body_(parameters.robot),
-      push_(parameters.push),
+    : push_(parameters.push),
       rise_x_(std::sin(parameters.world.slope_x)),
       rise_y_(std::sin(parameters.world.slope_y)),
       chance_(pushes) {
+    set_parameters(parameters);
+    if (push_.rate > 0.0) next_push_ = -std::log(1 - chance_.uniform()) / push_.rate;
+}
+
+void FloorMotion::set_parameters(const Parameters& parameters) {
+    body_ = parameters.robot;
     const bool creeps = body_.load_creep * body_.load != 0.0 ||
                         (body_.slope_creep != 0.0 && (rise_x_ != 0.0 || rise_y_ != 0.0));
     still_ = body_.turn_scrub == 0.0 && !creeps && body_.drift_x == 0.0 && body_.drift_y == 0.0 &&
              push_.rate == 0.0;
-    if (push_.rate > 0.0) next_push_ = -std::log(1 - chance_.uniform()) / push_.rate;
 }
 
 FloorVelocity FloorMotion::velocity(const Rolling& now, double step_seconds) {

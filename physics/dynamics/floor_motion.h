@@ -35,6 +35,8 @@ class FloorMotion {
     /// `pushes` decides when and where to (only drawn from when push.rate > 0).
     FloorMotion(const Parameters& parameters, RandomStream pushes);
 
+    /// All but the pushes, which stay as they were.
+    void set_parameters(const Parameters& parameters);
     /// Nothing of this is asked for: the floor stands still.
     bool still() const { return still_; }
     /// Of the step of `step_seconds` that ends at `now.seconds`; once a step.
@@ -49,11 +51,11 @@ class FloorMotion {
     void push(double seconds, double step_seconds, FloorVelocity& floor);
     void begin_push(double seconds);
 
-    BodyParameters body_;
+    BodyParameters body_{};
     PushParameters push_;
     double rise_x_, rise_y_;  // sine of the slope towards +x, +y
     RandomStream chance_;
-    bool still_;
+    bool still_ = true;
     double next_push_ = 0.0, begun_ = -1.0;    // s
     std::array<double, 3> goal_{}, pushed_{};  // m, m, rad: of the push under way, of all
     int pushes_ = 0;

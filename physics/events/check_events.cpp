@@ -6,6 +6,7 @@
 #include "physics/description/plan.h"
 #include "physics/description/robot_parameters.h"
 #include "physics/events/new_thing.h"
+#include "physics/robot/tuning.h"
 #include "protocols/rc5.h"
 
 #include <fmt/format.h>
@@ -106,6 +107,7 @@ class EventChecker {
             [[fallthrough]];
         case Verb::Lift:
         case Verb::Unset:
+        case Verb::Tune:
         case Verb::Put:
         case Verb::Select:
         case Verb::Reset:
@@ -244,7 +246,7 @@ class EventChecker {
 }  // namespace
 
 std::string problem_of(const Action& action) {
-    if (action.verb < Verb::Move || action.verb > Verb::Unset) return "unknown action";
+    if (action.verb < Verb::Move || action.verb > Verb::Tune) return "unknown action";
     const auto& to = action.to;
     if (std::string problem =
             first_of({to ? out_of("x", to->x, -kFarthestOfEvents, kFarthestOfEvents) : "",
@@ -271,6 +273,8 @@ std::string problem_of(const Action& action) {
             if (action.property == range.property)
                 return out_of(range.property, action.value, range.low, range.high);
         return fmt::format("'{}' cannot be set", action.property);
+    case Verb::Tune:
+        return problem_of_tuning(action.property, action.value);
     case Verb::Select:
         return out_of("position", action.number, 0, kLastPosition);
     case Verb::Remote:

@@ -23,6 +23,7 @@ enum class Verb : std::uint8_t {
     Reset,      ///< robot: its reset button
     Remote,     ///< robot, or all: a key of the remote control
     Unset,      ///< robot: its sensors see the world again, after Set of what is not there
+    Tune,       ///< robot: another value of a physical parameter
 };
 
 /// Objects of Set that are no things.
@@ -51,8 +52,9 @@ struct Action {
     double over = 0.0;                ///< s, Move: how long it glides; 0: at once
     NewThing thing{};                 ///< Add
     std::string property{};  ///< Set: "grey", "ambient", "intensity", "level", "reflectivity", "charge",
-                             ///< "ground": what a robot's ground sensors see in place of the floor
-    double value = 0.0;      ///< Set
+                             ///< "ground": what a robot's ground sensors see in place of the floor. Tune:
+                             ///< the parameter's name
+    double value = 0.0;      ///< Set, Tune
     int number = 0;          ///< Select: position 0..15. Remote: key 0..63
     int address = 0;         ///< Remote: 0..31
     double hold = 0.0;       ///< s, Remote: how long the key is held

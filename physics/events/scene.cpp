@@ -65,6 +65,8 @@ std::string Scene::apply(const Action& action) {
         return switch_over(action, what);
     case Verb::Unset:
         return unset(action, what);
+    case Verb::Tune:
+        return tune(action, what);
     default:
         return fmt::format("nothing of '{}' happens in the world", action.command);
     }
@@ -289,6 +291,13 @@ std::string Scene::unset(const Action& action, Found what) {
         return fmt::format("'{}' sees the floor as it is (expected set {} ground GREY before)", action.object,
                            action.object);
     model_.robots_[what.index].set_felt_ground(std::nullopt);
+    scene_changed();
+    return {};
+}
+
+std::string Scene::tune(const Action& action, Found what) {
+    if (what.kind != Kind::Robot) return fmt::format("'{}' is no robot", action.object);
+    model_.robots_[what.index].tune(action.property, action.value, model_.description_);
     scene_changed();
     return {};
 }

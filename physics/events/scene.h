@@ -77,6 +77,7 @@ class Scene {
     std::string set_room(const Action& action);
     std::string switch_over(const Action& action, Found what);
     std::string unset(const Action& action, Found what);
+    std::string tune(const Action& action, Found what);
     template <class Thing>
     std::string add_body(const Thing& thing, double heading);
     void add_fixed(const Shape& shape, const std::string& name);

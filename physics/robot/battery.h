@@ -14,6 +14,7 @@ class Battery {
 
     /// `running` motors (0..2) for one physics step; returns the voltage at the terminals.
     double draw(int running);
+    void set_parameters(const BatteryParameters& parameters) { parameters_ = parameters; }
     /// Another cell is put in; `charge` 0..1 of its capacity.
     void set_charge(double charge) { charge_ = charge; }
     double voltage() const { return voltage_; }

@@ -66,6 +66,22 @@ void RobotModel::scene_changed(const World& world) {
     light_the_floor();
 }
 
+void RobotModel::tune(std::string_view name, double value, const World& world) {
+    parameters_.set(name, value);
+    // What goes by parameters alone is made again; what remembers keeps what it does.
+    proximity_ = ProximityRing(parameters_.proximity);
+    light_ = LightRing(parameters_.light, parameters_.proximity, ambient_light_, lamps_);
+    ground_ = GroundRow(parameters_.ground, world.arena.floor_grey, world.patches);
+    proximity_noise_.set_parameters(parameters_.proximity);
+    accelerometer_.set_parameters(parameters_.accelerometer);
+    battery_.set_parameters(parameters_.battery);
+    floor_motion_.set_parameters(parameters_);
+    for (WheelDrive& drive : drives_)
+        drive.set_parameters(parameters_.robot);
+    looked_around_ = true;
+    light_the_floor();
+}
+
 double RobotModel::wheel_speed(Side side, double seconds, double wheel_angle) {
     const auto i = static_cast<std::size_t>(side);
     auto& drive = drives_[i];

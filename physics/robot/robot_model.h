@@ -16,6 +16,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 namespace puckloop::physics {
 
@@ -56,6 +57,9 @@ class RobotModel {
     void set_felt_ground(std::optional<double> grey) { felt_ground_ = grey; }
     const std::optional<double>& felt_ground() const { return felt_ground_; }
     void set_charge(double charge) { battery_.set_charge(charge); }
+    /// Another value of a parameter for which problem_of_tuning() is empty; `world` as at the beginning, with
+    /// what changed since.
+    void tune(std::string_view name, double value, const World& world);
 
     const ProximityRing& proximity() const { return proximity_; }
     const LightRing& light() const { return light_; }

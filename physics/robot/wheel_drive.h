@@ -17,6 +17,9 @@ class WheelDrive {
     /// `losses` decides which steps a fast motor loses (only drawn from when robot.step_loss_speed > 0).
     WheelDrive(const BodyParameters& parameters, RandomStream losses);
 
+    /// All but steps_per_turn, which stays.
+    void set_parameters(const BodyParameters& parameters) { parameters_ = parameters; }
+
     /// The firmware's counter stood at `steps` from `seconds` on; calls in order of time.
     void step_to(double steps, double seconds);
 

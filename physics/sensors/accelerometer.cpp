@@ -14,17 +14,20 @@ constexpr double kAccelerometerFullScale = 4095;
 
 Accelerometer::Accelerometer(const AccelerometerParameters& parameters, const SimulationParameters& world,
                              std::uint64_t seed, const std::string& robot)
-    : parameters_(parameters),
-      vibration_(seed, "physics/" + robot + "/vibration"),
-      one_g_(world.gravity),
-      share_(1.0 - std::exp(-2 * std::numbers::pi * parameters.bandwidth * kStepSeconds)),
-      turn_cosine_(std::cos(parameters.turn)),
-      turn_sine_(std::sin(parameters.turn)) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        zero_[axis] = parameters.zero + parameters.bias[axis];
+    : vibration_(seed, "physics/" + robot + "/vibration"), one_g_(world.gravity) {
+    set_parameters(parameters);
     const double gx = std::sin(world.slope_x);
     const double gy = std::sin(world.slope_y);
     gravity_ = {world.gravity * gx, world.gravity * gy, world.gravity * std::sqrt(1 - gx * gx - gy * gy)};
+}
+
+void Accelerometer::set_parameters(const AccelerometerParameters& parameters) {
+    parameters_ = parameters;
+    share_ = 1.0 - std::exp(-2 * std::numbers::pi * parameters.bandwidth * kStepSeconds);
+    turn_cosine_ = std::cos(parameters.turn);
+    turn_sine_ = std::sin(parameters.turn);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        zero_[axis] = parameters.zero + parameters.bias[axis];
 }
 
 std::array<double, 3> Accelerometer::sense(const RobotState& robot, const Surroundings& now) {

@@ -21,6 +21,7 @@ class Accelerometer {
     Accelerometer(const AccelerometerParameters& parameters, const SimulationParameters& world,
                   std::uint64_t seed, const std::string& robot);
 
+    void set_parameters(const AccelerometerParameters& parameters);
     /// Once a physics step. Counts for x (right), y (rear), z (up), 0..4095.
     std::array<double, 3> sense(const RobotState& robot, const Surroundings& now);
     /// What it sensed last, g forward, left, up, whatever the converter's range: the counts without their
@@ -28,12 +29,12 @@ class Accelerometer {
     const std::array<double, 3>& in_g() const { return in_g_; }
 
   private:
-    AccelerometerParameters parameters_;
+    AccelerometerParameters parameters_{};
     RandomStream vibration_;
     double one_g_;
-    double share_;  // of a new value that passes the low pass in one step
-    double turn_cosine_, turn_sine_;
-    std::array<double, 3> zero_;  // counts, this session's
+    double share_ = 1.0;  // of a new value that passes the low pass in one step
+    double turn_cosine_ = 1.0, turn_sine_ = 0.0;
+    std::array<double, 3> zero_{};  // counts, this session's
     std::array<double, 3> gravity_;
     std::array<double, 3> last_velocity_{};
     std::array<double, 3> filtered_{};  // m/s2 forward, left, up

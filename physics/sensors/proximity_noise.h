@@ -20,6 +20,7 @@ class ProximityNoise {
     /// Streams are the robot's own; with neutral parameters nothing is drawn.
     ProximityNoise(const ProximityParameters& parameters, std::uint64_t seed, const std::string& robot);
 
+    void set_parameters(const ProximityParameters& parameters) { parameters_ = parameters; }
     bool any() const { return flickers() || scatters() || hits(); }
     /// Once a physics step, to readings before they are cut to what can be read.
     void add(std::array<double, kProximitySensors>& counts, const Surroundings& now);

@@ -14,6 +14,10 @@ cosim::Time DrivenNode::earliest_output(cosim::PortIndex port) const {
     return bus && earliest == cosim::kNever ? earliest : std::min(earliest, reached_);
 }
 
+cosim::Time DrivenNode::next_instruction() const {
+    return std::max(reached_, chip_.clock->time_of(chip_.chip->cycle()));
+}
+
 void DrivenNode::state(StateWriter& archive) const {
     const cosim::StatefulNode& board = *board_;
     board.state(archive);

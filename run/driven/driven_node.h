@@ -21,6 +21,9 @@ class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
     explicit DrivenNode(std::unique_ptr<cosim::StatefulNode> board);
 
     debug::DebugChip& chip() { return *chip_.chip; }
+    /// When the instruction that comes next begins: at or after reached(). A chip that waits has none; its
+    /// time is that of its next cycle.
+    cosim::Time next_instruction() const;
     /// A change that may have the board send something: it is made before the next instruction.
     void change_later(std::function<void(debug::DebugChip&)> change) {
         changes_.push_back(std::move(change));

@@ -8,6 +8,7 @@
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
 #include "run/control/control_place.h"
+#include "run/driven/possible_actions.h"
 #include "run/driven/possible_faults.h"
 #include "run/driven/words.h"
 #include "run/factory/node_factory.h"
@@ -182,11 +183,11 @@ void DrivenRun::stand(const TakeSnapshot& take) {
     } else if (step_) {
         const bool holds = met();
         if (!holds && now_ < step_->until) {  // on to where its condition is looked at again
-            next_ = std::min(step_->until, now_ + step_->every);
+            next_ = next_look();
             return;
         }
         ordered_json done = reply(step_->id);
-        done["met"] = step_->condition.is_null() || holds;
+        done["met"] = holds || (step_->condition.is_null() && step_->board == nullptr);
         if (frames_.seen() && !frames_.found().is_null()) done["frame"] = frames_.found();
         done["acts"] = world_.take_replies();
         for (const ordered_json& one : done["acts"]) {
@@ -226,7 +227,16 @@ bool DrivenRun::returned() {
     return true;
 }
 
+Time DrivenRun::next_look() const {
+    Time next = now_ + step_->every;
+    // Just behind the begin of the next instruction, which is then executed whole.
+    if (step_->board != nullptr && !step_->board->chip().asleep())
+        next = std::max(now_, step_->board->next_instruction()) + 1;
+    return std::min(step_->until, next);
+}
+
 bool DrivenRun::met() {
+    if (step_->board != nullptr) return step_->board->chip().instructions() >= step_->instructions;
     const json& condition = step_->condition;
     if (condition.is_null()) return false;
     if (condition.contains("frame") || condition.contains("text")) return frames_.seen();
@@ -292,6 +302,8 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
         count_interrupts(request);
     } else if (op == "faults") {
         answered.update(possible_faults(setup_.scenario));
+    } else if (op == "actions") {
+        answered.update(possible_actions(setup_.scenario));
     } else if (op == "write") {
         const json change = with_place(request);
         board(change).write(change);
@@ -317,9 +329,9 @@ ordered_json DrivenRun::answer(const json& request, const TakeSnapshot& take, bo
     } else if (op == "flash") {
         flash(request, take);
     } else if (op != "info") {
-        constexpr std::array<std::string_view, 16> kOps{
-            "info", "step", "read",   "where", "write", "interrupts", "capture", "frames",
-            "act",  "save", "faults", "back",  "fault", "type",       "flash",   "end"};
+        constexpr std::array<std::string_view, 17> kOps{
+            "info",    "step", "read",   "where", "write", "interrupts", "capture", "frames", "act",
+            "actions", "save", "faults", "back",  "fault", "type",       "flash",   "end"};
         throw InputError(
             "", "op", fmt::format("there is no '{}'", op),
             fmt::format("{}{}", fmt::join(kOps, ", "), did_you_mean(op, {kOps.begin(), kOps.end()})));
@@ -340,6 +352,13 @@ void DrivenRun::count_interrupts(const json& request) {
 
 void DrivenRun::begin_step(const json& request) {
     Step step{request.value("id", json()), 0, 0, request.value("until", json())};
+    if (request.contains("instructions")) {
+        begin_instructions(request, step);
+        next_.reset();
+        step_ = std::move(step);
+        next_ = next_look();
+        return;
+    }
     const bool to = request.contains("to");
     if (to == request.contains("for"))
         throw InputError("", "step", "needs one of 'to' and 'for'", R"({"op": "step", "for": "20 ms"})");
@@ -364,6 +383,21 @@ void DrivenRun::begin_step(const json& request) {
     }
     next_ = step.condition.is_null() ? step.until : std::min(step.until, now_ + step.every);
     step_ = std::move(step);
+}
+
+void DrivenRun::begin_instructions(const json& request, Step& step) {
+    constexpr int kMost = 100'000;
+    constexpr Time kLongestWait = 100 * cosim::kMillisecond;
+    if (request.contains("to") || request.contains("for") || request.contains("until"))
+        throw InputError("", "instructions", "does not go with 'to', 'for' or 'until'",
+                         R"({"op": "step", "node": "robot0.pic", "instructions": 1})");
+    const auto count = request.at("instructions").get<std::int64_t>();
+    if (count < 1 || count > kMost)
+        throw InputError("", "instructions", fmt::format("{} is out of range", count), "1 to 100000");
+    step.board = &board(request).node();
+    step.instructions = step.board->chip().instructions() + static_cast<std::uint64_t>(count);
+    step.until = now_ + kLongestWait;
+    step.every = kFinest;
 }
 
 const std::string* DrivenRun::waiting_change() const {

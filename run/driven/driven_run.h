@@ -46,7 +46,7 @@ class DrivenRun {
   public:
     static constexpr int kProtocol = 1;
     /// Rises when requests are added; those that were there stay as they are.
-    static constexpr int kRevision = 3;
+    static constexpr int kRevision = 4;
 
     /// Plans the run of a request (run/setup.h).
     using Planner = std::function<RunSetup(const RunRequest&)>;
@@ -76,6 +76,9 @@ class DrivenRun {
         cosim::Time until = 0;     ///< where it ends in any case
         cosim::Time every = 0;     ///< how often its condition is looked at; 0: it has none
         nlohmann::json condition;  ///< null: none
+        /// Of a step by instructions: the board, and how many it will then have executed.
+        DrivenNode* board = nullptr;
+        std::uint64_t instructions = 0;
     };
 
     /// What the client did at a board or to the world.
@@ -111,11 +114,14 @@ class DrivenRun {
     bool returned();
     /// The step's condition holds now.
     bool met();
+    /// When it is looked at next, after now.
+    cosim::Time next_look() const;
     /// Answers requests until one lets the run go on.
     void serve(const TakeSnapshot& take);
     nlohmann::ordered_json answer(const nlohmann::json& request, const TakeSnapshot& take, bool& go_on);
     void count_interrupts(const nlohmann::json& request);
     void begin_step(const nlohmann::json& request);
+    void begin_instructions(const nlohmann::json& request, Step& step);
     void save(const nlohmann::json& request, const TakeSnapshot& take);
     /// Both return only by exceptions: Reverted, or InputError for what cannot be.
     [[noreturn]] void go_back(const nlohmann::json& request);

@@ -87,10 +87,16 @@ std::map<std::string, double> read_parameters(const std::string& file, const std
     return result;
 }
 
+Dimension dimension_of_parameter(const std::string& name) {
+    int index = -1;
+    const physics::ParameterInfo* info = physics::find_parameter(name, index);
+    return info == nullptr ? Dimension::Number : dimension_of(info->unit);
+}
+
 std::string parameter_text(const std::string& name, double value) {
     int index = -1;
     const physics::ParameterInfo* info = physics::find_parameter(name, index);
-    const Dimension dimension = info == nullptr ? Dimension::Number : dimension_of(info->unit);
+    const Dimension dimension = dimension_of_parameter(name);
     if (dimension == Dimension::Number || dimension == Dimension::Ratio) return fmt::format("{:.17g}", value);
     return fmt::format("\"{:.17g} {}\"", value, info->unit);
 }

@@ -17,6 +17,8 @@ physics::World read_world(Reader& top);
 std::map<std::string, double> read_parameters(const std::string& file, const std::string& where,
                                               const TomlValue& table);
 
+/// What its values are in; a number for a parameter that does not exist.
+Dimension dimension_of_parameter(const std::string& name);
 /// A physical parameter's value as such a table has it: with its unit where one is required.
 std::string parameter_text(const std::string& name, double value);
 

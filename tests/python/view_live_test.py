@@ -335,6 +335,67 @@ class Live(unittest.TestCase):
         self.assertEqual(browser.errors, [])
         self.assertEqual(self.report()["faults"], [])  # it was taken back
 
+    def test_one_instruction_at_a_time(self):
+        plain = self.folder / "plain"
+        self.assertEqual(puckloop("run", SCENARIO, "--in-process", "--duration", 2, "--out", plain).returncode, 0)
+        address = self.start(2)
+        self.ask(address, {"page": "a", "do": "look", "board": "robot0.pic", "items": []})
+        self.ask(address, {"page": "a", "do": "step", "ms": 100})
+        before = self.wait(address, lambda s: s["look"] and s["look"]["time_s"] > 0.099)["look"]
+        seen = []
+        for _ in range(20):
+            self.ask(address, {"page": "a", "do": "instruction", "board": "robot0.pic"})
+            look = self.wait(address, lambda s, t=before["time_s"]: s["look"]["time_s"] > t)["look"]
+            # A dsPIC at 7.37 MHz x 8 / 4: one to three cycles, and up to a board's ADC or bus in between.
+            self.assertLess(look["time_s"] - before["time_s"], 2e-6)
+            seen.append((before["where"]["pc"], look["where"]["pc"]))
+            before = look
+        self.assertGreater(len({pc for pair in seen for pc in pair}), 3)
+        for request in ({}, {"board": 3}, {"board": "x" * 65}):
+            self.assertEqual(self.ask(address, {"page": "a", "do": "instruction", **request})[0], 409)
+        self.ask(address, {"page": "a", "do": "play", "speed": 0})
+        self.wait(address, lambda s: s["over"])
+        self.run.wait(60)
+        self.assertEqual(self.report()["trace_sha256"], self.report(plain)["trace_sha256"])
+
+    def test_the_page_turns_a_selector_and_changes_a_parameter(self):
+        if not find_chromium():
+            self.skipTest("no chromium is installed")
+        address = self.start(30)
+        browser = Browser()
+        self.addCleanup(browser.close)
+        browser.open(address)
+        browser.wait("document.body && document.body.dataset.ready")
+        form = """(() => { const { worldForm } = window.puckloopView;
+            document.getElementById('world-open').click();
+            worldForm.verb.value = %s; worldForm.verb.dispatchEvent(new Event('change'));
+            worldForm.object.value = %s; worldForm.object.dispatchEvent(new Event('input'));
+            for (const [key, value] of Object.entries(%s)) {
+                const input = document.querySelector(`#world-fields [data-key=${key}]`);
+                input.value = value; input.dispatchEvent(new Event('input'));
+            }
+            const text = worldForm.text.value; document.getElementById('world-do').click(); return text; })()"""
+        done = [("select", "robot0", {"position": "5"}, "select robot0 position 5"),
+                ("tune", "robot0", {"parameter": "proximity.gain3", "value": "0.5"},
+                 "tune robot0 parameter proximity.gain3 value 0.5"),
+                ("add", "lamp", {"name": "sun", "centre": "10 cm, 10 cm", "intensity": "2"},
+                 "add lamp name sun centre 10 cm, 10 cm intensity 2")]
+        for verb, thing, keys, command in done:
+            self.assertEqual(browser.value(form % (json.dumps(verb), json.dumps(thing), json.dumps(keys))), command)
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 100 })")
+        state = self.wait(address, lambda s: len(s["acts"]) == len(done) and all(act["answer"] for act in s["acts"]))
+        self.assertEqual([act["refused"] for act in state["acts"]], [False] * len(done), state["acts"])
+        self.assertEqual(browser.value(form % ('"tune"', '"robot0"', '{"parameter": "robot.radius", "value": "4 cm"}')),
+                         "tune robot0 parameter robot.radius value 4 cm")
+        self.wait(address, lambda s: s["acts"][-1]["refused"] and "does not change" in s["acts"][-1]["answer"])
+        self.assertLessEqual({"robot0", "can", "floor"}, set(browser.value("window.puckloopView.objects()")))
+        self.assertEqual(browser.errors, [])
+        browser.value("document.getElementById('end-run').click()")
+        browser.wait("document.body.dataset.over === 'true'")
+        self.run.wait(60)
+        events = (self.out / "events.toml").read_text()
+        self.assertIn('tune = "robot0"\nparameter = "proximity.gain3"\nvalue = "0.5"', events)
+
     def test_the_page_plays_pauses_steps_and_acts(self):
         if not find_chromium():
             self.skipTest("no chromium is installed")

@@ -61,6 +61,24 @@ TEST_CASE("a run's folder is served until Ctrl-C, and what was refused is counte
     CHECK(Connection(viewer.port).id() == -1);
 }
 
+TEST_CASE("a WebSocket is a page's of this server, at the one address that has one") {
+    const Workbench bench;
+    const Viewer viewer = start_viewer(recorded(bench), bench.folder() / "s");
+    const auto upgrade = [&](const std::string& rest, const std::string& origin) {
+        const Connection connection(viewer.port);
+        connection.send(viewer.request(rest, origin + "Upgrade: websocket\r\nConnection: Upgrade\r\n"
+                                                      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                                                      "Sec-WebSocket-Version: 13\r\n"));
+        return status_of(connection.answer());
+    };
+    const std::string own = "Origin: http://" + viewer.host() + "\r\n";
+    CHECK(upgrade("live", "") == "403");
+    CHECK(upgrade("live", "Origin: http://evil.example\r\n") == "403");
+    // A recorded run has nothing new to send.
+    CHECK(upgrade("live", own) == "404");
+    CHECK(upgrade("head", own) == "404");
+}
+
 TEST_CASE("other hosts, origins, tokens and methods are refused") {
     const Workbench bench;
     const Viewer viewer = start_viewer(recorded(bench), bench.folder() / "s");

@@ -1,10 +1,14 @@
 // puckloop experiment: programs, conditions and seeds as runs, and what their scores show (docs/swarm.md).
 
 #include "base/error.h"
+#include "base/plain_text.h"
+#include "campaigns/experiment/again.h"
 #include "campaigns/experiment/conduct.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+
+#include <fmt/format.h>
 
 #include <memory>
 
@@ -16,14 +20,34 @@ struct ExperimentCommandOptions {
     swarm::ExperimentOptions experiment;
     jobs::WorkerTask share;
     bool worker = false;
+    int again = 0;  // number of a run; 0: none
 };
 
-constexpr int kMostExperimentJobs = 256, kMostExperimentTasks = 10'000;
+constexpr int kMostExperimentJobs = 256, kMostExperimentTasks = 10'000, kLastRun = 2'000'000'000;
+
+/// Status 1 if the run is not what it was.
+int run_again(const ExperimentCommandOptions& options) {
+    const swarm::Findings findings = swarm::read_findings(options.experiment.file);
+    const std::filesystem::path out = options.experiment.out.empty()
+                                          ? findings.out / "replay" / std::to_string(options.again)
+                                          : options.experiment.out;
+    const swarm::RunResult now = swarm::run_again(findings, options.again, out);
+    const swarm::RunResult& before = findings.results.at(options.again);
+    fmt::print("run {}: {}, trace {}\nresults in {}\n", options.again,
+               !now.failed.empty() ? "failed: " + plain_text(now.failed, kLongestMessage)
+               : now.score         ? fmt::format("score {:g}", *now.score)
+                                   : "no score",
+               now.trace, plain_text(out.string(), kLongestMessage));
+    if (now.trace == before.trace) return 0;
+    fmt::print(stderr, "puckloop: run {} is not what it was in the experiment\n", options.again);
+    return 1;
+}
 
 /// Status 1 if a run failed.
 int conduct(const ExperimentCommandOptions& options) {
     if (options.experiment.file.empty())
         throw InputError("", "experiment", "nothing given", "an experiment file (docs/swarm.md)");
+    if (options.again > 0) return run_again(options);
     if (!options.worker) return swarm::run_experiment(options.experiment) ? 0 : 1;
     swarm::work(options.experiment, options.share);
     return 0;
@@ -37,7 +61,10 @@ void declare_experiment(Command& app, int& status) {
         "experiment",
         "run programs under conditions with many seeds, or what is left of them, and compare scores");
     auto& experiment = options->experiment;
-    command->add_option("file", experiment.file, "experiment file (docs/swarm.md)")->type_name("FILE");
+    command
+        ->add_option("file", experiment.file,
+                     "experiment file (docs/swarm.md); with --again: a results folder")
+        ->type_name("FILE");
     command->add_option("--out", experiment.out, "folder for the results (default: out/<name of the file>)")
         ->check(not_empty())
         ->type_name("DIR");
@@ -57,6 +84,12 @@ void declare_experiment(Command& app, int& status) {
         ->type_name("N")
         ->capture_default_str();
     command->add_flag("--fresh", experiment.fresh, "drop the results that are in the folder and begin again");
+    command
+        ->add_option("--again", options->again,
+                     "carry out one run of a results folder once more, with all files of a run "
+                     "(into FILE/replay/N)")
+        ->check(whole_number_between(1, kLastRun))
+        ->type_name("N");
     // How an experiment starts its workers.
     command->add_flag("--worker", options->worker)->group("");
     command->add_option("--cases", options->share.jobs)->group("");
@@ -66,7 +99,8 @@ void declare_experiment(Command& app, int& status) {
         ->group("");
     command->footer("Examples:\n"
                     "  puckloop experiment scenarios/experiments/aggregation.toml\n"
-                    "  puckloop experiment scenarios/experiments/aggregation.toml --against robots.csv");
+                    "  puckloop experiment scenarios/experiments/aggregation.toml --against robots.csv\n"
+                    "  puckloop experiment out/aggregation --again 12");
     command->callback([options, &status] {
         options->share.tasks = options->experiment.tasks;
         status = conduct(*options);

@@ -5,6 +5,7 @@
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 #include "tools/viewer/film.h"
+#include "tools/viewer/run_pages.h"
 #include "tools/viewer/serve.h"
 #include "traces/recorded_trace.h"
 #include "view/answers.h"
@@ -30,7 +31,7 @@ namespace {
 struct ViewOptions {
     std::string folder, file, size;
     int port = 0;
-    std::optional<double> picture_at;  // s
+    std::optional<double> picture_at, at;  // s
     FilmOptions film;
 };
 
@@ -83,11 +84,25 @@ void export_file(const view::Recording& recording, const std::string& file) {
     if (file != "-") fmt::print("{}: {:.1f} MB\n", file, static_cast<double>(page.size()) * 1e-6);
 }
 
-void serve(const view::Recording& recording, int port) {
+void serve(const view::Recording& recording, int port, std::optional<double> at) {
     const view::EventReader events(recording);
     const view::Answers answers(recording, events);
     view::HttpServer server(static_cast<std::uint16_t>(port),
                             [&](std::string_view target) { return answers.get(target); });
+    serve_until_interrupted(server, at ? fmt::format("?t={:g}", *at) : std::string());
+}
+
+/// A campaign's or an experiment's report, and the pages of its runs.
+void serve_runs(ManyRuns runs, const ViewOptions& options) {
+    if (!options.file.empty() || options.at)
+        throw InputError(
+            options.folder, options.at ? "--at" : "--export",
+            fmt::format("it has many runs, and this is for one {}", runs.what),
+            fmt::format("the folder of a {0}, such as {1}", runs.what,
+                        runs.runs.empty() ? "replay/1" : runs.folder(*runs.runs.begin()).string()));
+    RunPages pages(std::move(runs));
+    view::HttpServer server(static_cast<std::uint16_t>(options.port),
+                            [&](std::string_view target) { return pages.get(target); });
     serve_until_interrupted(server);
 }
 
@@ -98,8 +113,11 @@ void declare_view(Command& app, int&) {
     constexpr double kLongest = 9e6, kSlowest = 0.001, kFastest = 1000, kFewest = 1, kMostRate = 120;
     auto options = std::make_shared<ViewOptions>();
     Command* command = app.add_subcommand(
-        "view", "a recorded run as a page in the browser: arena, timeline, frames, sensors");
-    command->add_option("folder", options->folder, "results folder of a run")->required()->type_name("DIR");
+        "view", "a recorded run as a page in the browser: arena, timeline, frames, sensors; "
+                "of a campaign or experiment, its report with such a page behind each number");
+    command->add_option("folder", options->folder, "results folder of a run, a campaign or an experiment")
+        ->required()
+        ->type_name("DIR");
     command
         ->add_option("--export", options->file,
                      "write one file, and end: .html (the page with all its data; - is the standard output), "
@@ -109,6 +127,9 @@ void declare_view(Command& app, int&) {
     command->add_option("--port", options->port, "port on 127.0.0.1; 0 (default): one that is free")
         ->check(whole_number_between(0, kMostPort))
         ->type_name("N");
+    command->add_option("--at", options->at, "the page begins at this time (s)")
+        ->check(number_between(0, kLongest))
+        ->type_name("TIME");
     command
         ->add_option(
             "--png", options->picture_at,
@@ -135,6 +156,8 @@ void declare_view(Command& app, int&) {
         ->type_name("N");
     command->footer("Examples:\n"
                     "  puckloop view out/hello                     # prints the address to open\n"
+                    "  puckloop view out/hello --at 12.5\n"
+                    "  puckloop view out/own                       # a campaign's report, with its cases\n"
                     "  puckloop view out/hello --export hello.html # one file to keep or to mail\n"
                     "  puckloop view out/hello --png 12.5          # a picture, hello.png\n"
                     "  puckloop view out/hello --export hello.mp4 --part arena --speed 4\n");
@@ -144,14 +167,19 @@ void declare_view(Command& app, int&) {
             if (command->count(option) > 0) given.emplace_back(option);
         check_export(*options, given);
         if (view::ControlClient::is_there(options->folder)) {
+            if (options->at)
+                throw InputError(options->folder, "--at", "its run goes on", "the end of the run");
             if (!options->file.empty())
                 throw InputError(options->folder, "--export", "its run goes on", "the end of the run");
             return serve_live(options->folder, options->port);
         }
+        if (auto runs = many_runs(options->folder)) return serve_runs(std::move(*runs), *options);
+        if (options->at && !options->file.empty())
+            throw InputError("", "--at", "is for the page in the browser", "--begin of a film, --png TIME");
         const view::Recording recording(options->folder);
         for (const std::string& note : recording.notes())
             fmt::print(stderr, "puckloop: {}: {}\n", options->folder, note);
-        if (options->file.empty()) return serve(recording, options->port);
+        if (options->file.empty()) return serve(recording, options->port, options->at);
         if (!is_film(options->file) && !options->picture_at) return export_file(recording, options->file);
         check_output_file(options->file);
         write_film(recording, options->film);

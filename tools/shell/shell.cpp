@@ -70,6 +70,15 @@ struct ShellCommands {
     static void step(Shell& shell, const std::string& argument) {
         shell.take(shell.ask({{"op", "step"}, {"for", time_words(argument.empty() ? "0.1" : argument)}}));
     }
+    static void instruction(Shell& shell, const std::string& argument) {
+        const json count = json::parse(argument.empty() ? "1" : argument, nullptr, false);
+        if (!count.is_number_integer())
+            throw InputError("", argument, "is no number of instructions", "1 to 100000");
+        const json reply = shell.ask({{"op", "step"}, {"node", shell.board_}, {"instructions", count}});
+        shell.take(reply);
+        if (!reply.value("met", false)) throw InputError("", "stepi", "the board waits: 100 ms went by");
+        where(shell, {});
+    }
     static void run(Shell& shell, const std::string& argument) {
         if (argument.empty())
             shell.take(shell.ask({{"op", "step"}, {"for", "700 h"}}));
@@ -178,6 +187,8 @@ struct ShellCommands {
 std::span<const Shell::Command> ShellCommands::all() {
     static const std::array commands{
         Shell::Command{"step", "[TIME]", "on by so much (100 ms)", step},
+        Shell::Command{"stepi", "[N]", "on by instructions of the board (1), and where it then is",
+                       instruction},
         Shell::Command{"run", "[TIME]", "on to a time; to the end", run},
         Shell::Command{"until", "CONDITION",
                        "on, at most 60 s: TMR1 >= 9, text \"ok\", frame link=robot0.uart value=4e", until},

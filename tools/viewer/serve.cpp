@@ -4,16 +4,18 @@
 #include "view/answers.h"
 #include "view/event_passes.h"
 #include "view/live/driver.h"
+#include "view/live/feed.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
 #include <optional>
 
 namespace puckloop::tools {
 
-void serve_until_interrupted(view::HttpServer& server) {
-    fmt::print("{}\nopen this address in a browser; Ctrl-C ends\n", server.address());
+void serve_until_interrupted(view::HttpServer& server, const std::string& rest) {
+    fmt::print("{}{}\nopen this address in a browser; Ctrl-C ends\n", server.address(), rest);
     std::fflush(stdout);
     server.serve();
     const auto& counts = server.counts();
@@ -40,6 +42,14 @@ void serve_live(const std::string& folder, int port, bool opens) {
             const std::string why = driver.request(body);
             if (why.empty()) return view::HttpServer::Posted{true, {"application/json", driver.state()}};
             return view::HttpServer::Posted{false, {"text/plain; charset=utf-8", why}};
+        },
+        [&](std::string_view target) -> view::HttpServer::Feed {
+            if (target != "live") return nullptr;
+            return [feed = std::make_shared<view::Feed>(
+                        recording,
+                        view::Feed::Source{[&] { return driver.state(); }, [&] { return driver.epoch(); }})] {
+                return feed->next();
+            };
         });
     fmt::print(stderr, "puckloop: the run stands still until the page lets it go on\n");
     std::optional<OpenedPage> page;

@@ -7,8 +7,8 @@
 
 namespace puckloop::tools {
 
-/// Prints the page's address, serves until Ctrl-C, prints how many requests came.
-void serve_until_interrupted(view::HttpServer& server);
+/// Prints the page's address with `rest` behind it, serves until Ctrl-C, prints how many requests came.
+void serve_until_interrupted(view::HttpServer& server, const std::string& rest = {});
 
 /// Drives the run in `folder`, which waits for its client, and serves its page on `port` (0: any that is
 /// free) until Ctrl-C, which ends the run. `opens`: in the user's browser, where there is a display. Throws

@@ -29,6 +29,8 @@ Driver::Driver(const fs::path& folder) : run_(folder) {
     time_s_ = first.value("time_s", 0.0);
     auto possible = json::parse(run_.ask(R"({"op": "faults"})"), nullptr, false);
     if (!possible.is_object()) possible = json::object();
+    const auto actions = json::parse(run_.ask(R"({"op": "actions"})"), nullptr, false);
+    if (actions.is_object()) possible.update(actions);
     possible["boards"] = first.value("boards", json::array());
     possible_ = possible.dump(-1, ' ', false, json::error_handler_t::replace);
     thread_ = std::thread([this] { run(); });
@@ -98,7 +100,10 @@ bool Driver::serve() {
 void Driver::carry_out(const Work& work) {
     switch (work.kind) {
     case Work::Kind::Step:
-        step(work.ms);
+        step(json{{"op", "step"}, {"for", fmt::format("{} ms", work.ms)}});
+        break;
+    case Work::Kind::Instruction:
+        step(json{{"op", "step"}, {"node", work.board}, {"instructions", 1}});
         break;
     case Work::Kind::Act:
         return act(work.text);
@@ -193,9 +198,8 @@ void Driver::note(const std::string& command, const std::string& answer, bool re
     if (acts_.size() > kKeptActs) acts_.erase(acts_.begin());
 }
 
-void Driver::step(int ms) {
-    const auto reply =
-        json::parse(run_.ask(json{{"op", "step"}, {"for", fmt::format("{} ms", ms)}}.dump()), nullptr, false);
+void Driver::step(const json& request) {
+    const auto reply = json::parse(run_.ask(request.dump()), nullptr, false);
     if (!reply.is_object()) throw RunError("a reply of the run that is none");
     const std::lock_guard lock(mutex_);
     time_s_ = reply.value("time_s", time_s_);
@@ -263,6 +267,11 @@ std::string Driver::request(const std::string& text) {
         if (!(ms >= 1.0 && ms <= kMostStepMs)) return "a step of 1 to 10,000 ms is expected";
         playing_ = false;
         waiting_.push_back({Work::Kind::Step, static_cast<int>(ms)});
+    } else if (what == "instruction") {
+        const std::string board = string_of("board");
+        if (board.empty() || board.size() > kLongestName) return "a board's name is expected";
+        playing_ = false;
+        waiting_.push_back({.kind = Work::Kind::Instruction, .board = board});
     } else if (what == "act") {
         const std::string command = string_of("command");
         if (command.empty() || command.size() > kLongestCommand) return "a command is expected";

@@ -5,6 +5,8 @@
 
 #include "view/live/control_client.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -27,20 +29,21 @@ class Driver {
     Driver& operator=(const Driver&) = delete;
 
     /// A request of a page, JSON: "page" (its name), "do": "play" with "speed" (times real time; 0: as fast
-    /// as it goes), "pause", "step" with "ms" (1..10,000), "act" with "command", "until" with "condition" (as
-    /// typed), "board" (that it means if it names none) and "ms" (at most so long), "back" with "to_s",
-    /// "fault" with "fault" (as --fault), "type" with "link", "from" and "text" (what is typed into the line
-    /// as if that end had sent it), "flash" with "board" and "file" (a path on this machine), "interrupts"
-    /// with "board" and "count" (they are counted or not), "look" with "board" and "items" (what to read, as
-    /// typed, at most kMostItems), "end", "take". The first page that asks for anything drives, others are
-    /// refused until they "take" it. Returns "" or why it is refused.
+    /// as it goes), "pause", "step" with "ms" (1..10,000), "instruction" of "board", "act" with "command",
+    /// "until" with "condition" (as typed), "board" (that it means if it names none) and "ms" (at most so
+    /// long), "back" with "to_s", "fault" with "fault" (as --fault), "type" with "link", "from" and "text"
+    /// (what is typed into the line as if that end had sent it), "flash" with "board" and "file" (a path on
+    /// this machine), "interrupts" with "board" and "count" (they are counted or not), "look" with "board"
+    /// and "items" (what to read, as typed, at most kMostItems), "end", "take". The first page that asks for
+    /// anything drives, others are refused until they "take" it. Returns "" or why it is refused.
     std::string request(const std::string& text);
 
     /// JSON: time_s, playing, speed, over, why, driver, epoch (rises when what was recorded changes: the run
     /// went back), acts (the latest: number, command, answer, refused), look (what was asked for at the time:
     /// "where" and "values").
     std::string state() const;
-    /// JSON: boards, and what faults the run can have (run/driven/possible_faults.h).
+    /// JSON: boards, what faults the run can have (run/driven/possible_faults.h), and what can be done to its
+    /// world (possible_actions.h).
     const std::string& possible() const { return possible_; }
     /// The run goes on.
     bool on() const;
@@ -60,7 +63,7 @@ class Driver {
         bool refused = false;
     };
     struct Work {
-        enum class Kind { Step, Act, Until, Back, Fault, Type, Flash, Ask, Look };
+        enum class Kind { Step, Instruction, Act, Until, Back, Fault, Type, Flash, Ask, Look };
         Kind kind = Kind::Step;
         int ms = 0;           // of a step
         double to_s = 0.0;    // of going back
@@ -70,7 +73,7 @@ class Driver {
     void run() noexcept;
     bool serve();
     void carry_out(const Work& work);
-    void step(int ms);
+    void step(const nlohmann::json& request);
     void act(const std::string& command);
     void until(const Work& work);
     void restart(const std::string& request, const std::string& command);

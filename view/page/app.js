@@ -4,12 +4,13 @@ import { BoardPart } from './board.js';
 import { Cameras } from './cameras.js';
 import { FaultForm } from './fault_form.js';
 import { Live, sensorsAgainAfter } from './live.js';
-import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors } from './model.js';
+import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors, parseTrails } from './model.js';
 import { palette } from './palette.js';
 import { Panel } from './panel.js';
 import { makeSource } from './source.js';
 import { Terminal } from './terminal.js';
 import { TimelineView } from './timeline.js';
+import { WorldForm } from './world_form.js';
 
 const element = (id) => document.getElementById(id);
 const passOf = (generation) => Math.floor(generation / 65536);  // of reading the events of a run that goes on
@@ -40,12 +41,13 @@ class App {
       (time, number) => this.jump(time, number));
     if (head.live) {
       this.live = new Live(this.run, this.source, redraw, (error) => this.trouble(error));
-      await this.live.refresh();
+      await this.live.listen();
       element('live').hidden = false;
       element('speed').append(new Option('max', 0));
       const possible = this.possible = await this.source.json('possible');
       this.board = new BoardPart(element('board-part'), possible.boards || [], (request) => this.drive(request));
       this.faultForm = new FaultForm(element('fault-form'), possible, (request) => this.drive(request));
+      this.worldForm = new WorldForm(element('world-form'), possible, () => this.objects(), (request) => this.drive(request));
       this.arena.carry = (name, to) => this.drive({ do: 'act', command: `move ${name} to ${to.x.toFixed(4)} m, ${to.y.toFixed(4)} m` });
     }
     const serial = head.live ? this.possible.places.filter((place) => place.on === 'uart') : (head.report || {}).serial;
@@ -58,8 +60,12 @@ class App {
     if (head.robots > 0) this.choose(0);
     await this.cameras.load();
     document.body.dataset.ready = 'arena';
+    const asked = Number(new URLSearchParams(location.search).get('t'));
+    if (asked > 0 && !this.live) {
+      this.seek(asked);
+      this.timeline.place(asked - 1, 2);
+    }
     requestAnimationFrame((time) => this.frame(time));
-    if (this.live) this.live.poll().catch((error) => this.trouble(error));
     await this.readEvents();
     document.body.dataset.ready = 'all';
     while (this.live) {
@@ -135,6 +141,7 @@ class App {
         run.beams = parseBeams(await this.source.beams());
         this.legend();
       }
+      if (this.run.head.arena && this.run.head.arena.trails.length > 0) run.trails = parseTrails(await this.source.trails());
       this.rows();
       run.redraw();
       element('progress').value = status.progress;
@@ -205,6 +212,11 @@ class App {
     const took = events.durations[number] > 0 ? `, ${(1e3 * events.durations[number]).toFixed(3)} ms` : '';
     element('detail').textContent = `${events.begins[number].toFixed(6)} s${took}  ${track.name}  ${text}`;
     element('detail').className = failed ? 'failed' : '';
+  }
+  /** Names of all that an action can be about: what was there at the beginning, and what has come. */
+  objects() {
+    const known = (this.possible.objects || []).map((one) => one.name);
+    return [...new Set([...known, ...this.run.paths.map((path) => path.name), 'floor', 'light'])];
   }
   /** Has the run do something; what is refused is shown. */
   drive(request) {
@@ -286,6 +298,7 @@ class App {
       on('back-5', 'click', () => back(this.live.state.time_s - 5));
       on('back-here', 'click', () => back(this.run.now));
       on('fault-open', 'click', () => { this.play(false); this.faultForm.open(this.live.state.time_s); });
+      on('world-open', 'click', () => this.worldForm.open(this.run.head.stations[this.robot]));
       on('press-reset', 'click', () => this.drive({ do: 'act', command: `reset ${this.run.head.stations[this.robot]}` }));
       on('end-run', 'click', () => this.drive({ do: 'end' }));
       on('take', 'click', () => this.drive({ do: 'take' }));
@@ -320,7 +333,7 @@ class App {
       event.preventDefault();
       return this.step(!event.shiftKey).catch((error) => this.trouble(error));
     }
-    if (target.id === 'find' || target.tagName === 'SELECT' || event.ctrlKey || event.metaKey || element('help').open || element('fault-form').open) {
+    if (target.id === 'find' || target.tagName === 'SELECT' || event.ctrlKey || event.metaKey || element('help').open || element('fault-form').open || element('world-form').open) {
       if (target.id === 'find' && event.key === 'Escape') target.blur();
       return undefined;
     }
@@ -331,7 +344,7 @@ class App {
       Home: () => move(-1e9), End: () => move(1e9), n: () => this.step(true), N: () => this.step(false),
       '+': () => this.timeline.zoom(0.6, this.run.now), '-': () => this.timeline.zoom(1 / 0.6, this.run.now),
       0: () => this.timeline.all(), f: () => element('arena-fit').click(), m: () => this.marker(false),
-      M: () => this.marker(true), '/': () => element('find').focus(), '?': () => element('help').showModal(),
+      i: () => this.live && this.board.board && this.board.stepper.click(), M: () => this.marker(true), '/': () => element('find').focus(), '?': () => element('help').showModal(),
     };
     const act = keys[event.key];
     if (!act) return undefined;
@@ -352,7 +365,6 @@ class App {
     this.stillSpeed = speed;
     await this.panel.refreshRecent();
     const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-    this.panel.plottedAt = -1e9;
     this.run.redraw();
     await drawn();
     await this.cameras.pending;

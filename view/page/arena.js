@@ -1,8 +1,10 @@
 // The arena seen from above: x to the right, y up. Wheel zooms, drag moves, click chooses, Shift+drag measures.
-import { belowThreshold, countUpTo, ircomWord, poseAt, roundStep } from './model.js';
+import { belowThreshold, countUpTo, ircomWord, plays, poseAt, roundStep, speakerLed, turretLed } from './model.js';
 import { prepared } from './plot.js';
 
 const defaultRadius = 0.035;  // m, of an e-puck
+// m ahead of and left of the axle's middle: the turret's LEDs, as cameras see them (physics/camera/camera_scene.cpp).
+const turretPlaces = [[0.013, -0.021], [0.013, 0.021], [-0.0325, -0.003]];
 // Degrees clockwise from the front, of the eight proximity sensors (front right first).
 const proximityDegrees = [17, 49, 90, 150, 210, 270, 311, 343];
 
@@ -133,6 +135,7 @@ export class ArenaView {
     g.fillStyle = colours.outside;
     g.fillRect(0, 0, width, height);
     this.floor();
+    this.pheromones();
     this.grid(width, height);
     this.things(options);
     if (options.trail > 0) this.trails(options.trail);
@@ -190,6 +193,35 @@ export class ArenaView {
       g.fill();
       if (patch.image) this.picture(patch);
     }
+  }
+  /** What lay where when it was last recorded. */
+  pheromones() {
+    const trails = (this.run.head.arena && this.run.head.arena.trails) || [], g = this.g;
+    trails.forEach(({ side, grey }, i) => {
+      const recorded = this.run.trails && this.run.trails[i];
+      const at = recorded ? countUpTo(recorded.times, this.run.now) : 0;
+      if (at === 0) return;
+      g.fillStyle = this.grey(grey);
+      for (const square of recorded.layers[at - 1]) {
+        const [x, y] = this.at(square.x - side / 2, square.y + side / 2);
+        g.globalAlpha = square.strength;
+        g.fillRect(x, y, side * this.scale + 0.5, side * this.scale + 0.5);
+      }
+      g.globalAlpha = 1;
+    });
+  }
+  /** Sound, from where it comes. */
+  sound(x, y, from) {
+    const g = this.g, [px, py] = this.at(x, y);
+    g.strokeStyle = this.colours.ircom;
+    g.lineWidth = 1.5;
+    for (const away of [5, 10, 15]) {
+      g.globalAlpha = 1 - away / 20;
+      g.beginPath();
+      g.arc(px, py, from + away, 0, 2 * Math.PI);
+      g.stroke();
+    }
+    g.globalAlpha = 1;
   }
   picture(patch) {
     if (!this.images.has(patch)) this.images.set(patch, pictureOf(patch.image));
@@ -260,6 +292,7 @@ export class ArenaView {
         g.fill();
         this.label(one.name, one.x, one.y, 14);
       }
+    for (const one of arena.speakers) if (plays(one, this.run.now)) this.sound(one.x, one.y, 5);
   }
   booth(booth) {
     const g = this.g;
@@ -386,8 +419,26 @@ export class ArenaView {
     g.fillStyle = colour;
     g.fill();
     if (r > 9) this.leds(index, r);
+    this.turret(index, r, metres);
     g.restore();
+    if (this.run.leds.isOn(index, speakerLed, this.run.now)) this.sound(pose.x, pose.y, r);
     this.label(name, pose.x, pose.y, r + 11);
+  }
+  /** The three LEDs of the RGB turret, where the omnidirectional camera has them. */
+  turret(index, r, metres) {
+    const g = this.g, now = this.run.now;
+    turretPlaces.forEach(([ahead, left], led) => {
+      const level = [0, 1, 2].map((colour) => this.run.leds.level(index, turretLed + 3 * led + colour, now));
+      const most = Math.max(...level);
+      if (most === 0) return;
+      g.beginPath();
+      g.arc(ahead * metres, -left * metres, Math.max(0.16 * r, 2), 0, 2 * Math.PI);
+      g.fillStyle = `rgb(${level.map((value) => Math.round((235 * value) / most)).join(',')})`;
+      g.fill();
+      g.lineWidth = 1;
+      g.strokeStyle = this.colours.back;
+      g.stroke();
+    });
   }
   leds(index, r) {
     const g = this.g, now = this.run.now;

@@ -32,10 +32,13 @@ export class BoardPart {
     this.counter = document.createElement('label');
     this.counter.title = 'counts what the program takes from now on; the run is slower meanwhile';
     this.counter.append(this.counting, ' interrupts');
+    this.stepper = Object.assign(document.createElement('button'), { id: 'step-instruction', textContent: 'one instruction',
+      title: 'on by one instruction of this board (I)' });
+    this.stepper.addEventListener('click', () => this.ask({ do: 'instruction', board: this.board }));
     this.flasher = document.createElement('div');
     this.flasher.append(this.image, this.burn);
-    this.flasher.hidden = this.input.hidden = this.counter.hidden = true;
-    element.append(this.chooser, this.where, this.input, this.values, this.code, this.stack, this.counter, this.interrupts, this.flasher);
+    this.flasher.hidden = this.input.hidden = this.counter.hidden = this.stepper.hidden = true;
+    element.append(this.chooser, this.stepper, this.where, this.input, this.values, this.code, this.stack, this.counter, this.interrupts, this.flasher);
     element.hidden = boards.length === 0;
   }
   get board() { return this.chooser.value; }
@@ -52,7 +55,7 @@ export class BoardPart {
   look() {
     this.before = new Map();
     this.drawn = '';
-    this.input.hidden = this.flasher.hidden = this.counter.hidden = this.board === '';
+    this.input.hidden = this.flasher.hidden = this.counter.hidden = this.stepper.hidden = this.board === '';
     for (const part of [this.where, this.values, this.code, this.stack, this.interrupts]) part.replaceChildren();
     return this.ask({ do: 'look', board: this.board, items: this.items });
   }
@@ -67,7 +70,7 @@ export class BoardPart {
       return;
     }
     const place = [where.place, where.line].filter(Boolean).join('  ');
-    this.where.textContent = `${look.time_s.toFixed(6)} s  PC ${hex(where.pc, 4)}  ${place}${where.asleep ? '  waits' : ''}`;
+    this.where.textContent = `${look.time_s.toFixed(9)} s  PC ${hex(where.pc, 4)}  ${place}${where.asleep ? '  waits' : ''}`;
     const rows = this.items.map((item, i) => [item, look.values[i].ok ? look.values[i].text : look.values[i].error, item, !look.values[i].ok]);
     for (const one of where.registers) rows.push([one.name, hex(one.value, one.bits / 4), null, false]);
     this.values.replaceChildren(...rows.map(([name, text, item, failed]) => {

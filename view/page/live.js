@@ -1,24 +1,21 @@
-// A run that is on: its new rows as they come, and what drives it. The page whose user does something first drives;
+// A run that is on: what the viewer sends of it, and what drives it. The page whose user does something first drives;
 // others look on until they take over.
+import { Bytes } from './bytes.js';
 
-const livePollMilliseconds = 100;
+const again = 1000;  // milliseconds until a line that broke is tried again
+const part = { state: 1, name: 2, rows: 3 };
 
-/** Rows "t,name,x,y,heading" after what paths have; new names become new paths. */
-export function appendRows(paths, text, robot) {
-  const byName = new Map(paths.filter((path) => path.robot === robot).map((path) => [path.name, path]));
-  for (const line of text.split('\n')) {
-    const [t, name, x, y, heading] = line.split(',');
-    if (heading === undefined || Number.isNaN(Number(t))) continue;  // the header
-    let path = byName.get(name);
-    if (!path) {
-      path = { name, robot, t: [], x: [], y: [], heading: [] };
-      byName.set(name, path);
-      paths.push(path);
-    }
-    path.t.push(Number(t));
-    path.x.push(Number(x));
-    path.y.push(Number(y));
-    path.heading.push(Number(heading));
+/** Rows behind what paths have: `numbers` of paths, times, and x, y and heading one after the other. */
+export function appendRows(paths, bytes) {
+  const count = bytes.number();
+  const numbers = bytes.array(Uint16Array, count), times = bytes.array(Float64Array, count);
+  const [x, y, heading] = [0, 1, 2].map(() => bytes.array(Float32Array, count));
+  for (let i = 0; i < count; ++i) {
+    const path = paths.get(numbers[i]);
+    path.t.push(times[i]);
+    path.x.push(x[i]);
+    path.y.push(y[i]);
+    path.heading.push(heading[i]);
   }
 }
 
@@ -28,14 +25,14 @@ export class Live {
     Object.assign(this, { run, source, changed, trouble });
     this.page = Array.from(crypto.getRandomValues(new Uint8Array(8)), (byte) => byte.toString(16)).join('');
     this.state = { time_s: 0, playing: false, speed: 1, over: false, why: '', driver: '', acts: [], epoch: 0, look: null };
-    this.offsets = { 'new-robots': 0, 'new-objects': 0 };
+    this.paths = new Map();
     this.atEdge = true;
     this.sent = Promise.resolve();
     run.paths.length = 0;
   }
   /** The run went back: what is known of it is read again. */
   begin() {
-    this.offsets = { 'new-robots': 0, 'new-objects': 0 };
+    this.paths.clear();
     this.run.paths.length = 0;
     this.run.begin();
   }
@@ -43,25 +40,50 @@ export class Live {
   edge() {
     return this.run.paths.reduce((latest, path) => Math.max(latest, path.t.length ? path.t[path.t.length - 1] : 0), 0);
   }
-  async poll() {
-    for (;;) {
-      const over = this.state.over;
-      await this.refresh();
-      if (over) return;
-      await new Promise((resolve) => setTimeout(resolve, livePollMilliseconds));
-    }
+  /** Listens for as long as the run goes on; comes back with the first that is heard. */
+  listen() {
+    return new Promise((heard, failed) => {
+      const line = new WebSocket(`${location.origin.replace('http', 'ws')}${location.pathname}live`);
+      line.binaryType = 'arraybuffer';
+      line.addEventListener('open', () => {  // all positions come, once more where the line broke
+        this.paths.clear();
+        this.run.paths.length = 0;
+      });
+      line.addEventListener('message', ({ data }) => {
+        try {
+          this.take(data);
+          heard();
+        } catch (error) {
+          this.trouble(error);
+        }
+      });
+      line.addEventListener('close', () => {
+        failed(new Error('the viewer does not answer'));
+        if (this.state.over) return;
+        setTimeout(() => this.listen().catch((error) => this.trouble(error)), again);
+      });
+    });
   }
-  async refresh() {
-    const { epoch } = this.state;
-    this.state = await this.source.json('drive');
-    if (this.state.epoch !== epoch) this.begin();
-    for (const [name, robot] of [['new-robots', true], ['new-objects', false]])
-      for (;;) {
-        const bytes = await this.source.bytes(`${name}?from=${this.offsets[name]}`);
-        if (bytes.byteLength === 0) break;
-        this.offsets[name] += bytes.byteLength;
-        appendRows(this.run.paths, new TextDecoder().decode(bytes), robot);
+  /** The parts of a message (view/live/feed.h). */
+  take(message) {
+    const bytes = new Bytes(message);
+    while (bytes.at < message.byteLength) {
+      const [kind] = bytes.array(Uint8Array, 1), size = bytes.number();
+      const inner = new Bytes(bytes.array(Uint8Array, size).buffer);
+      if (kind === part.state) {
+        const { epoch } = this.state;
+        this.state = JSON.parse(new TextDecoder().decode(inner.buffer));
+        if (this.state.epoch !== epoch) this.begin();
+      } else if (kind === part.name) {
+        const [robot] = inner.array(Uint8Array, 1), [number] = inner.array(Uint16Array, 1);
+        const name = new TextDecoder().decode(inner.buffer.slice(inner.at));
+        const path = { name, robot: robot === 1, t: [], x: [], y: [], heading: [] };
+        this.paths.set(number, path);
+        this.run.paths.push(path);
+      } else if (kind === part.rows) {
+        appendRows(this.paths, inner);
       }
+    }
     this.run.duration = Math.max(this.edge(), 1e-3);
     this.changed();
   }

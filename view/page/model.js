@@ -35,7 +35,38 @@ export function poseAt(path, time) {
   return { x: between(path.x), y: between(path.y), heading: between(path.heading) };
 }
 
+/** Squares of pheromones by the time at which they were recorded: [{time, trail, x, y, strength}, ...] of each trail. */
+export function parseTrails(buffer) {
+  const bytes = new Bytes(buffer), count = bytes.number();
+  bytes.number();
+  const times = bytes.array(Float64Array, count), of = bytes.array(Uint16Array, count);
+  const [x, y, strength] = [0, 1, 2].map(() => bytes.array(Float32Array, count));
+  const trails = [];
+  for (let i = 0; i < count; ++i) {
+    while (trails.length <= of[i]) trails.push({ times: [], layers: [] });
+    const trail = trails[of[i]];
+    if (trail.times.at(-1) !== times[i]) {
+      trail.times.push(times[i]);
+      trail.layers.push([]);
+    }
+    trail.layers.at(-1).push({ x: x[i], y: y[i], strength: strength[i] });
+  }
+  return trails;
+}
+
+/** Does a loudspeaker of the arena play at `time`? */
+export function plays(speaker, time) {
+  if (time < speaker.on) return false;
+  const last = speaker.times > 0 ? speaker.times - 1 : Infinity;
+  const number = speaker.every > 0 ? Math.min(Math.floor((time - speaker.on) / speaker.every), last) : 0;
+  return time - speaker.on - number * speaker.every < speaker.off - speaker.on;
+}
+
 export const failedFlag = 1;
+
+/** Numbers of what Leds knows, beside 0..7 of the ring, 8 body, 9 front: the turret's nine colours, the speaker. */
+export const turretLed = 10, speakerLed = 19;
+const ledsOfRobot = 32;
 
 /** Events as they come, and of each track the numbers of its events in the order of their begins. */
 export class Events {
@@ -144,7 +175,7 @@ export class Leds {
     const times = bytes.array(Float64Array, count), robots = bytes.array(Uint16Array, count);
     const leds = bytes.array(Uint8Array, count), values = bytes.array(Uint8Array, count);
     for (let i = 0; i < count; ++i) {
-      const key = 16 * robots[i] + leds[i];
+      const key = ledsOfRobot * robots[i] + leds[i];
       if (!this.changes.has(key)) this.changes.set(key, { times: [], values: [] });
       const list = this.changes.get(key);
       list.times.push(times[i]);
@@ -153,11 +184,13 @@ export class Leds {
     this.count += count;
     return this.count < all;
   }
-  isOn(robot, led, time) {
-    const list = this.changes.get(16 * robot + led);
-    if (!list) return false;
+  isOn(robot, led, time) { return this.level(robot, led, time) !== 0; }
+  /** 0 to 255, of a colour of the turret. */
+  level(robot, led, time) {
+    const list = this.changes.get(ledsOfRobot * robot + led);
+    if (!list) return 0;
     const i = countUpTo(list.times, time);
-    return i > 0 && list.values[i - 1] !== 0;
+    return i > 0 ? list.values[i - 1] : 0;
   }
 }
 

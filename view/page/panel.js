@@ -1,6 +1,6 @@
 // What there is of one robot: pose, LEDs, sensor values over the time that the timeline shows, its latest frames.
 import { countUpTo, poseAt } from './model.js';
-import { drawPlot, shortNumber } from './plot.js';
+import { Layer, drawPlot, shortNumber } from './plot.js';
 
 const groups = [
   ['proximity', 'counts', Array.from({ length: 8 }, (_, i) => `proximity${i}`)],
@@ -11,7 +11,7 @@ const groups = [
   ['microphones', 'counts', ['mic_level0', 'mic_level1', 'mic_level2']],
   ['battery', 'V', ['battery_v']],
 ];
-const recentCount = 12, plotMilliseconds = 100;
+const recentCount = 12;
 
 function changes(values) {
   return values.some((value) => value !== values[0]);
@@ -65,7 +65,7 @@ export class Panel {
       box.className = 'plot';
       box.append(canvas);
       this.plots.append(label, box);
-      this.drawn.push({ canvas, value, lines: lines.map((column) => ({ t: sensors.t, values: sensors.columns.get(column) })) });
+      this.drawn.push({ canvas, value, layer: new Layer(), lines: lines.map((column) => ({ t: sensors.t, values: sensors.columns.get(column) })) });
     }
     this.run.redraw();
   }
@@ -96,19 +96,11 @@ export class Panel {
       }));
     }
     if (!this.run.sensors || !this.drawn) return;
-    // Plots of an hour cost more than all the rest: ten times a second is enough, and once more at the end.
-    const wall = performance.now();
-    clearTimeout(this.later);
-    if (wall - this.plottedAt < plotMilliseconds) {
-      this.later = setTimeout(this.run.redraw, plotMilliseconds);
-      return;
-    }
-    this.plottedAt = wall;
     const i = Math.max(0, countUpTo(this.run.sensors.t, this.run.now) - 1);
-    for (const { canvas, value, lines } of this.drawn) {
+    for (const { canvas, value, layer, lines } of this.drawn) {
       const now = lines.length > 3 ? '' : lines.map(({ values }) => shortNumber(values[i])).join('  ');
       if (value.textContent !== now) value.textContent = now;
-      drawPlot(canvas, lines.map((line, k) => ({ ...line, colour: colours.robot(k) })), from, to, this.run.now, colours);
+      drawPlot(layer, canvas, lines.map((line, k) => ({ ...line, colour: colours.robot(k) })), from, to, this.run.now, colours);
     }
   }
   /** The events of the robot just before now; asked for a few times a second at most. */

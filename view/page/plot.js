@@ -2,9 +2,8 @@
 import { countUpTo } from './model.js';
 
 /** The context of a canvas, scaled so that one unit is one CSS pixel; {g, width, height}. */
-export function prepared(canvas) {
+export function prepared(canvas, width = canvas.clientWidth, height = canvas.clientHeight) {
   const ratio = window.devicePixelRatio || 1;
-  const width = canvas.clientWidth, height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
@@ -14,9 +13,40 @@ export function prepared(canvas) {
   return { g, width, height };
 }
 
+/** What of a canvas does not change with the time that is shown: it is drawn once and copied from then on. */
+export class Layer {
+  constructor() {
+    this.canvas = document.createElement('canvas');
+    this.key = [];
+  }
+  /** `paint(g, width, height)` draws what `key` names; it is asked again once any of the key's values differs. */
+  draw(canvas, key, paint) {
+    const { g, width, height } = prepared(canvas);
+    if (width === 0 || height === 0) return { g, width, height };
+    const whole = [width, height, window.devicePixelRatio, ...key];
+    if (whole.length !== this.key.length || whole.some((value, i) => value !== this.key[i])) {
+      paint(prepared(this.canvas, width, height).g, width, height);
+      this.key = whole;
+    }
+    g.drawImage(this.canvas, 0, 0, width, height);
+    return { g, width, height };
+  }
+}
+
 /** Lines [{t, values, colour}] between times `from` and `to`; the time `now` as a line. */
-export function drawPlot(canvas, lines, from, to, now, colours) {
-  const { g, width, height } = prepared(canvas);
+export function drawPlot(layer, canvas, lines, from, to, now, colours) {
+  const key = [from, to, colours.back, ...lines.flatMap(({ t, values, colour }) => [t, values, colour])];
+  const { g, width, height } = layer.draw(canvas, key, (...surface) => drawLines(...surface, lines, from, to, colours));
+  const x = ((now - from) / (to - from)) * width;
+  g.strokeStyle = colours.cursor;
+  g.lineWidth = 1;
+  g.beginPath();
+  g.moveTo(x, 0);
+  g.lineTo(x, height);
+  g.stroke();
+}
+
+function drawLines(g, width, height, lines, from, to, colours) {
   g.fillStyle = colours.back;
   g.fillRect(0, 0, width, height);
   let least = Infinity, most = -Infinity;
@@ -40,12 +70,6 @@ export function drawPlot(canvas, lines, from, to, now, colours) {
     for (let i = first; i < last; i += step) g.lineTo(x(t[i]), y(values[i]));
     g.stroke();
   }
-  g.strokeStyle = colours.cursor;
-  g.lineWidth = 1;
-  g.beginPath();
-  g.moveTo(x(now), 0);
-  g.lineTo(x(now), height);
-  g.stroke();
   g.fillStyle = colours.dim;
   g.font = '10px system-ui, "DejaVu Sans", sans-serif';
   g.textBaseline = 'top';

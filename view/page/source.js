@@ -12,6 +12,7 @@ class ServerSource {
   poses() { return this.bytes('poses'); }
   status() { return this.json('status'); }
   beams() { return this.bytes('beams'); }
+  trails() { return this.bytes('trails'); }
   events(from) { return this.bytes(`events?from=${from}`); }
   leds(from) { return this.bytes(`leds?from=${from}`); }
   sensors(robot) { return this.bytes(`sensors?robot=${robot}`); }

@@ -1,7 +1,7 @@
 // The timeline: one row per track, each event as long as it took; where there are many, columns as dark as they are
 // dense. Wheel zooms, drag moves, click jumps.
 import { countUpTo, failedFlag, roundStep } from './model.js';
-import { prepared } from './plot.js';
+import { Layer } from './plot.js';
 
 const rowHeight = 17, axisHeight = 22, namesWidth = 188;
 
@@ -18,6 +18,7 @@ export class TimelineView {
     this.marks = [];      // search results: times, rising
     this.markers = [];    // the user's
     this.selected = -1;
+    this.layer = new Layer();
     this.listen();
   }
   all() {
@@ -116,8 +117,17 @@ export class TimelineView {
   }
 
   draw(colours) {
-    const { g, width, height } = prepared(this.canvas);
-    if (width === 0) return;
+    const { events, rows, tracks } = this.run;
+    const key = [this.from, this.to, this.scroll, this.selected, colours.back, this.marks, this.markers.join(),
+      events, events.generation, events.count, rows.map((row) => tracks[row].name).join()];
+    const { g, width, height } = this.layer.draw(this.canvas, key, (...surface) => this.paint(...surface, colours));
+    const now = this.x(this.run.now);
+    if (width === 0 || now < namesWidth) return;
+    g.fillStyle = colours.cursor;
+    g.fillRect(now - 0.5, 0, 1.5, height);
+  }
+  /** All but the time that is shown. */
+  paint(g, width, height, colours) {
     g.fillStyle = colours.back;
     g.fillRect(0, 0, width, height);
     const first = Math.floor(this.scroll / rowHeight);
@@ -228,11 +238,6 @@ export class TimelineView {
     g.fillStyle = colours.dim;
     g.textAlign = 'left';
     g.fillText(`${this.run.rows.length} tracks`, 9, axisHeight / 2);
-    const now = this.x(this.run.now);
-    if (now >= namesWidth) {
-      g.fillStyle = colours.cursor;
-      g.fillRect(now - 0.5, 0, 1.5, height);
-    }
     g.fillStyle = colours.line;
     g.fillRect(namesWidth - 1, 0, 1, height);
     g.fillRect(0, axisHeight, width, 1);

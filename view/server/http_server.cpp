@@ -1,16 +1,19 @@
 #include "view/server/http_server.h"
 
 #include "base/error.h"
+#include "view/server/web_socket.h"
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
 #include <csignal>
 #include <set>
+#include <utility>
 
 namespace puckloop::view {
 
@@ -30,11 +33,13 @@ std::string_view text_of(boost::string_view text) {
 }
 
 /// What browsers are to keep to: nothing from elsewhere, in no frame, nothing kept.
-void add_headers(http::response<http::string_body>& answer) {
-    answer.set(
-        "Content-Security-Policy",
-        "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
-        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+void add_headers(http::response<http::string_body>& answer, bool own_style, std::uint16_t port) {
+    // To browsers of before 2022 a WebSocket of the same server is not 'self'.
+    answer.set("Content-Security-Policy",
+               fmt::format("default-src 'none'; script-src 'self'; style-src 'self'{0}; "
+                           "connect-src 'self' ws://127.0.0.1:{1} ws://localhost:{1}; img-src 'self' data:; "
+                           "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+                           own_style ? " 'unsafe-inline'" : "", port));
     answer.set("X-Content-Type-Options", "nosniff");
     answer.set("X-Frame-Options", "DENY");
     answer.set("Referrer-Policy", "no-referrer");
@@ -48,9 +53,10 @@ void add_headers(http::response<http::string_body>& answer) {
 struct HttpServer::Impl : std::enable_shared_from_this<HttpServer::Impl> {
     class Session;
 
-    Impl(std::uint16_t port, Get answer, Post change, ServerLimits bounds)
+    Impl(std::uint16_t port, Get answer, Post change, NewFeed feeds, ServerLimits bounds)
         : get(std::move(answer)),
           post(std::move(change)),
+          new_feed(std::move(feeds)),
           limits(bounds),
           acceptor(context),
           signals(context, SIGINT, SIGTERM, SIGHUP),
@@ -72,6 +78,7 @@ struct HttpServer::Impl : std::enable_shared_from_this<HttpServer::Impl> {
 
     Get get;
     Post post;
+    NewFeed new_feed;
     ServerLimits limits;
     asio::io_context context{1};
     tcp::acceptor acceptor;
@@ -124,6 +131,7 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
             return refuse(*refused, http::status::forbidden);
         const auto rest = server_->access->rest_of(text_of(request.target()));
         if (!rest) return refuse(Refusal::Token, http::status::not_found);
+        if (beast::websocket::is_upgrade(request)) return feed(*rest);
         if (request.method() == http::verb::post && server_->post) return change(*rest);
         if (request.method() != http::verb::get || !request.body().empty())
             return refuse(Refusal::Method, http::status::method_not_allowed);
@@ -141,7 +149,22 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
         answer_ = {http::status::ok, 11};
         answer_.set(http::field::content_type, content->type);
         answer_.body() = std::move(content->body);
+        own_style_ = content->own_style;
         send();
+    }
+
+    /// From here on it is a WebSocket, and this session lasts as long.
+    void feed(std::string_view rest) {
+        const auto& request = parser_->get();
+        if (request[http::field::origin].empty()) return refuse(Refusal::Origin, http::status::forbidden);
+        Feed next = server_->new_feed ? server_->new_feed(rest) : Feed();
+        if (!next) return refuse(Refusal::Unknown, http::status::not_found);
+        ++server_->counts.answered;
+        serve_web_socket(std::move(stream_), parser_->release(), std::move(next),
+                         milliseconds(server_->limits.feed_seconds),
+                         [self = shared_from_this()](bool malformed) {
+                             if (malformed) self->server_->refuse(Refusal::Malformed);
+                         });
     }
 
     void change(std::string_view rest) {
@@ -168,7 +191,7 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
     }
 
     void send() {
-        add_headers(answer_);
+        add_headers(answer_, std::exchange(own_style_, false), server_->acceptor.local_endpoint().port());
         answer_.keep_alive(keep_);
         answer_.prepare_payload();
         stream_.expires_after(milliseconds(server_->limits.answer_seconds));
@@ -192,6 +215,7 @@ class HttpServer::Impl::Session : public std::enable_shared_from_this<Session> {
     std::optional<http::request_parser<http::string_body>> parser_;
     http::response<http::string_body> answer_;
     bool keep_ = false;
+    bool own_style_ = false;  // of the answer
 };
 
 void HttpServer::Impl::accept() {
@@ -207,8 +231,8 @@ void HttpServer::Impl::accept() {
     });
 }
 
-HttpServer::HttpServer(std::uint16_t port, Get get, Post post, ServerLimits limits)
-    : impl_(std::make_shared<Impl>(port, std::move(get), std::move(post), limits)) {}
+HttpServer::HttpServer(std::uint16_t port, Get get, Post post, NewFeed new_feed, ServerLimits limits)
+    : impl_(std::make_shared<Impl>(port, std::move(get), std::move(post), std::move(new_feed), limits)) {}
 
 HttpServer::~HttpServer() = default;
 

@@ -19,6 +19,7 @@ struct ServerLimits {
     std::size_t body_bytes = 4096;    ///< of a POST; a GET may have none
     double request_seconds = 15;      ///< for a whole request to come, and idle between two
     double answer_seconds = 60;       ///< for a slow reader to take an answer
+    double feed_seconds = 1.0 / 30;   ///< between two messages of a feed, at least
 };
 
 class HttpServer {
@@ -31,9 +32,14 @@ class HttpServer {
         Content content;
     };
     using Post = std::function<std::optional<Posted>(std::string_view target, const std::string& body)>;
+    /// What a WebSocket is sent, binary: called again and again while it is open, once the last message has
+    /// been taken; empty: there is nothing new.
+    using Feed = std::function<std::string()>;
+    /// A feed for a WebSocket that is opened at `target`; null: there is none.
+    using NewFeed = std::function<Feed(std::string_view target)>;
 
     /// Listens. `port` 0: any that is free. Throws InputError if it is taken.
-    HttpServer(std::uint16_t port, Get get, Post post = {}, ServerLimits limits = {});
+    HttpServer(std::uint16_t port, Get get, Post post = {}, NewFeed new_feed = {}, ServerLimits limits = {});
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;

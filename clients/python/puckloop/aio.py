@@ -126,6 +126,9 @@ class Board:
     async def set_memory(self, address: int, data: bytes) -> None:
         await self._run._do(session.write_memory(self.name, address, data))
 
+    async def step(self, instructions: int = 1) -> bool:
+        return await self._run._do(session.step_instructions(self.name, instructions))
+
 
 class Dut:
     """As puckloop.Dut; made by Run.dut()."""

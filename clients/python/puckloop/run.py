@@ -82,6 +82,11 @@ class Board:
         """Bytes of data space, as if the program wrote them. RequestError."""
         self._run._do(session.write_memory(self.name, address, data))
 
+    def step(self, instructions: int = 1) -> bool:
+        """The run goes on until this board has executed so many instructions (1 to 100,000). False: it has not within
+        100 ms, for it waits. RequestError."""
+        return self._run._do(session.step_instructions(self.name, instructions))
+
 
 class Dut:
     """What is sent on one direction of a serial line, as text to wait for."""

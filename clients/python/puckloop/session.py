@@ -115,6 +115,11 @@ class Session:
 
 
 # A board's chip, at the time at which the run stands still.
+def step_instructions(node: str, count: int) -> Operation[bool]:
+    reply = yield "step", {"node": node, "instructions": count}
+    return bool(reply["met"])
+
+
 def read_register(node: str, name: str) -> Operation[Register]:
     reply = yield "read", {"node": node, "register": name}
     return Register(name, int(reply["value"]), int(reply["bits"]), dict(reply["fields"]))

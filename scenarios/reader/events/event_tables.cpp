@@ -4,6 +4,7 @@
 #include "scenarios/reader/events/action_forms.h"
 #include "scenarios/reader/events/command_text.h"
 #include "scenarios/tables/thing_tables.h"
+#include "scenarios/tables/world_tables.h"
 
 #include <fmt/format.h>
 
@@ -133,6 +134,10 @@ Action read_action(Reader& reader, const TomlValue& table, int line) {
         action.number = read_number(reader, "key", 63);
         action.address = static_cast<int>(reader.integer("address", 0, 0, 31));
         action.hold = reader.quantity("hold", Dimension::Time, 0.0);
+        break;
+    case Verb::Tune:
+        action.property = reader.text("parameter");
+        action.value = reader.quantity("value", dimension_of_parameter(action.property));
         break;
     case Verb::Remove:
     case Verb::Lift:
