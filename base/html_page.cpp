@@ -22,7 +22,8 @@ td.n{text-align:right} code,pre{background:var(--part);padding:1px 3px;overflow-
 
 std::string html_head(std::string_view title, std::string_view style) {
     return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                       "<meta name=\"viewport\" content=\"width=device-width\"><title>{}</title><style>{}{}"
+                       "<meta name=\"viewport\" content=\"width=device-width\">"
+                       "<link rel=\"icon\" href=\"data:,\"><title>{}</title><style>{}{}"
                        "</style></head><body>\n",
                        escaped(title), kStyle, style);
 }

@@ -15,12 +15,14 @@ seeds = [1]
 [[sweep]]
 name = "lost bytes"
 fault = {{ kind = "drop", link = "robot0.uart", from = "robot0.linux", count = 1 }}
-times = ["700 ms", "1.2 s"]
+times = {{ from = "700 ms", to = "1.2 s", step = "500 ms" }}
 """
 EXPERIMENT = f"""[experiment]
 scenario = "{SOURCE}/scenarios/aggregation.toml"
 duration = "2 s"
 seeds = [1, 2]
+[[program]]
+name = "wander"
 set = {{ robots = 2 }}
 """
 
@@ -100,7 +102,7 @@ class Reports(InFolder):
 
     def test_a_run_that_cannot_be_carried_out_again_says_why(self):
         scenario = self.folder / "mine.toml"
-        scenario.write_text((SOURCE / "scenarios/hello.toml").read_text())
+        scenario.write_text((SOURCE / "scenarios/hello.toml").read_text().replace("../firmware", f"{SOURCE}/firmware"))
         file, out = self.folder / "lost.toml", self.folder / "lost"
         file.write_text(CAMPAIGN.replace(f"{SOURCE}/scenarios/hello.toml", str(scenario)))
         self.assertEqual(puckloop("faults", "campaign", file, "--out", out).returncode, 0)
