@@ -85,6 +85,30 @@ class Client(InFolder):
             self.assertTrue(step.met)
             self.assertLess(step.time_s, 1)
 
+    def test_a_board_goes_on_by_instructions(self):
+        tam = SOURCE / "scenarios/tam.toml"
+        for scenario, node in ((SOURCE / "scenarios/hello.toml", "robot0.pic"), (tam, "tam0.avr")):
+            with puckloop.start(scenario, out=self.folder / node) as run:
+                board = run.board(node)
+                run.step(for_="300 ms")
+                places, times = [], [run.time_ps]
+                for _ in range(50):
+                    if not board.step():
+                        break
+                    places.append(board.value("PC"))
+                    times.append(run.time_ps)
+                self.assertGreater(len(set(places)), 3, node)
+                # The first may be waited for, and is seen a microsecond late; the others take one to five cycles each.
+                self.assertTrue(all(50e3 < b - a < 400e3 for a, b in zip(times[2:], times[3:])), times)
+                before = run.time_ps
+                self.assertTrue(board.step(1000))
+                self.assertGreater(run.time_ps - before, 1000 * 20e3)
+                for wrong in (0, -1, 100_001):
+                    with self.assertRaisesRegex(puckloop.RequestError, "1 to 100000"):
+                        board.step(wrong)
+                with self.assertRaisesRegex(puckloop.RequestError, "has no board 'nobody'"):
+                    run.board("nobody").step()
+
     def test_conditions_and_places_are_texts(self):
         with self.begun() as run:
             board = run.board("robot0.pic")

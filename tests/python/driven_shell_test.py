@@ -30,6 +30,8 @@ step 500ms
 read TMR1 U2STA.TRMT 0x850:4
 where
 frames link=robot0.uart from=robot0.pic
+stepi
+stepi 3
 until TMR1 >= 0x10
 until frame link=robot0.uart from=robot0.pic
 act move can to 10 cm, 5 cm
@@ -49,7 +51,7 @@ end
         self.assertRegex(said, r"(?m)^TMR1 = 0x[0-9a-f]{4} \d+")
         self.assertRegex(said, r"(?m)^U2STA.TRMT = [01]$")
         self.assertRegex(said, r"(?m)^0x850:4 = 0x[0-9a-f]{8} ")
-        self.assertRegex(said, r"(?m)^=> 0x[0-9a-f]{4}  \S")
+        self.assertEqual(len(re.findall(r"(?m)^=> 0x[0-9a-f]{4}  \S", said)), 3)
         self.assertRegex(said, r"(?m)fault=insert from=robot0\.pic .*value=76$")
         self.assertGreater(len(re.findall(r"(?m)^[01]\.\d+ .*from=robot0\.pic.* value=[0-9a-f]{2}$", said)), 1)
         self.assertIn("\n0.400000 s\n", said)
