@@ -150,6 +150,8 @@ std::optional<Content> Answers::get(std::string_view target) const {
         return *number < recording_.robots() ? std::optional(Content{kBinary, recording_.sensors(*number)})
                                              : std::nullopt;
     if (name == "events") return Content{kBinary, events.table().block(*number, kMostEvents)};
+    if (name == "tracked")
+        return Content{"text/csv; charset=utf-8", recording_.tail(Recording::Rows::Tracker, *number)};
     if (name == "leds") return Content{kBinary, events.leds(*number, kMostEvents)};
     return std::nullopt;
 }

@@ -103,6 +103,10 @@ std::string exported_page(const Recording& recording, EventReader& events, std::
     add("status", events.status());
     add("beams", events.beams());
     add("trails", recording.trails());
+    std::string tracked;
+    for (std::string part; !(part = recording.tail(Recording::Rows::Tracker, tracked.size())).empty();)
+        tracked += part;
+    add("tracked", tracked);
     std::vector<std::string> robots(recording.stations().begin(),
                                     recording.stations().begin() +
                                         static_cast<std::ptrdiff_t>(recording.robots()));

@@ -247,8 +247,9 @@ std::string Recording::trails() const {
     return out;
 }
 
-std::string Recording::tail(bool robots, std::size_t from) const {
-    std::ifstream in(folder_ / (robots ? "trajectory.csv" : "objects.csv"), std::ios::binary);
+std::string Recording::tail(Rows rows, std::size_t from) const {
+    constexpr std::array kFiles{"objects.csv", "trajectory.csv", "tracker.csv"};
+    std::ifstream in(folder_ / kFiles[static_cast<std::size_t>(rows)], std::ios::binary);
     std::string text(kMostTail, '\0');
     if (!in || !in.seekg(static_cast<std::streamoff>(from))) return {};
     in.read(text.data(), static_cast<std::streamsize>(text.size()));

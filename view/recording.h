@@ -4,6 +4,7 @@
 
 #include "physics/render/path_file.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -41,8 +42,11 @@ class Recording {
     /// kMostSquares, the first.
     std::string trails() const;
 
-    /// Whole lines of trajectory.csv (`robots`) or objects.csv from byte `from` on, at most kMostTail bytes.
-    std::string tail(bool robots, std::size_t from) const;
+    /// Files of rows that grow with the run.
+    enum class Rows : std::uint8_t { Objects, Robots, Tracker };
+    /// Whole lines of objects.csv, trajectory.csv or tracker.csv from byte `from` on, at most kMostTail
+    /// bytes.
+    std::string tail(Rows rows, std::size_t from) const;
 
     static constexpr std::size_t kMostRows = 20'000;
     static constexpr std::size_t kMostTail = 1 << 20;

@@ -261,5 +261,104 @@ class Page(unittest.TestCase):
         self.browser.errors.clear()
 
 
+SEEN = """[run]
+duration = "3 s"
+allow = ["program"]
+[arena]
+size = ["1 m", "1 m"]
+[[speaker]]
+name = "horn"
+position = ["30 cm", "30 cm"]
+level = 500
+on = "1 s"
+off = "2 s"
+[[pheromone]]
+name = "trail"
+record_every = "500 ms"
+[tracker]
+position_noise = "0 m"
+[[robot]]
+name = "leader"
+position = ["0 cm", "0 cm"]
+[robot.pic]
+firmware = "own"
+[robot.linux]
+program = ["/usr/bin/python3", "-B", "turret.py"]
+start = "500 ms"
+"""
+TURRET = """import fcntl, os, time
+bus = os.open("/dev/i2c-3", os.O_RDWR)
+fcntl.ioctl(bus, 0x0703, 0x61)
+os.write(bus, bytes([0, 0, 40, 0, 40, 0, 40, 0, 0]))  # LED 2 blue, 1 green, 0 red
+time.sleep(1)
+os.write(bus, bytes(9))
+time.sleep(2)
+"""
+
+
+class Seen(unittest.TestCase):
+    """What is on the arena beside robots and things."""
+
+    def test_turret_sound_trail_and_tracker(self):
+        if not find_chromium():
+            self.skipTest("no chromium is installed")
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "seen.toml").write_text(SEEN)
+            (folder / "turret.py").write_text(TURRET)
+            ran = puckloop("run", "seen.toml", "--in-process", "--out", "o", folder=folder)
+            self.assertTrue((folder / "o/trace.csv").exists(), ran.stderr)
+            page = folder / "o.html"
+            self.assertEqual(puckloop("view", folder / "o", "--export", page).returncode, 0)
+            for exported in (False, True):
+                # pylint: disable=consider-using-with
+                viewer = subprocess.Popen([PROGRAM, "view", folder / "o"], stdout=subprocess.PIPE, text=True)
+                browser = Browser()
+                try:
+                    browser.open(page.as_uri() if exported else viewer.stdout.readline().strip())
+                    browser.wait("document.body && document.body.dataset.ready === 'all'")
+                    self.look(browser)
+                finally:
+                    browser.close()
+                    viewer.send_signal(signal.SIGINT)
+                    viewer.communicate(timeout=20)
+
+    def look(self, browser):
+        level = "[...Array(9).keys()].map((i) => window.puckloopView.run.leds.level(0, 10 + i, %s))"
+        self.assertEqual(browser.value(level % 0.4), [0] * 9)
+        self.assertEqual(browser.value(level % 1.2), [40, 0, 0, 0, 40, 0, 0, 0, 40])
+        self.assertEqual(browser.value(level % 2.5), [0] * 9)
+        self.assertGreaterEqual(browser.value("window.puckloopView.run.trails[0].times.length"), 5)
+        self.assertEqual(browser.value("window.puckloopView.run.tracked.at(1).map((one) => one.robot)"), ["leader"])
+        self.assertAlmostEqual(browser.value("window.puckloopView.run.tracked.at(1)[0].x"), 0, delta=0.01)
+        self.assertFalse(browser.value("document.getElementById('tracker-part').hidden"))
+
+        def colour(x, y):
+            """Of the arena's canvas at a place in metres, once it is drawn."""
+            return browser.value(f"""new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {{
+                const {{ arena }} = window.puckloopView, ratio = window.devicePixelRatio;
+                const [px, py] = arena.at({x}, {y});
+                done([...arena.canvas.getContext('2d').getImageData(px * ratio, py * ratio, 1, 1).data].slice(0, 3)); }})))""")
+
+        def show(time):
+            browser.value(f"window.puckloopView.seek({time})")
+
+        show(1.2)
+        red, green, blue = colour(0.013, -0.021), colour(0.013, 0.021), colour(-0.0325, -0.003)
+        for lit, most in ((red, 0), (green, 1), (blue, 2)):
+            self.assertEqual(lit.index(max(lit)), most, (red, green, blue))
+            self.assertGreater(max(lit), 200)
+        # The horn's rings: 5, 10 and 15 pixels outside its sign of 5.
+        ring = browser.value("10 / window.puckloopView.arena.scale")
+        sounds = colour(0.3 + ring, 0.3)
+        show(0.4)
+        self.assertNotEqual(colour(0.3 + ring, 0.3), sounds)
+        before = colour(0.0, 0.06)
+        browser.value("(() => { const box = document.getElementById('tracker'); box.click(); })()")
+        radius = browser.value("1.25 * 0.035")
+        self.assertTrue(any(colour(radius * x, radius * y) != before for x, y in ((0.8, 0.6), (0.6, 0.8), (-0.6, 0.8))))
+        self.assertEqual(browser.errors, [])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -46,7 +46,7 @@ std::string Feed::next() {
 
 void Feed::rows_of(bool robots, std::string& out) {
     const auto file = static_cast<std::size_t>(robots);
-    const std::string text = recording_.tail(robots, read_[file]);
+    const std::string text = recording_.tail(static_cast<Recording::Rows>(file), read_[file]);
     read_[file] += text.size();
     std::vector<std::uint16_t> numbers;
     std::vector<double> times;

@@ -4,7 +4,7 @@ import { BoardPart } from './board.js';
 import { Cameras } from './cameras.js';
 import { FaultForm } from './fault_form.js';
 import { Live, sensorsAgainAfter } from './live.js';
-import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors, parseTrails } from './model.js';
+import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors, parseTrails, Tracked } from './model.js';
 import { palette } from './palette.js';
 import { Panel } from './panel.js';
 import { makeSource } from './source.js';
@@ -29,8 +29,8 @@ class App {
   async begin() {
     const head = await this.source.head();
     const paths = parsePoses(await this.source.poses(), head.paths);
-    this.run = { head, paths, leds: new Leds(), events: new Events(), beams: null, sensors: null, tracks: [], rows: [],
-      begin: () => { this.stale = passOf(this.run.events.generation); this.run.events = new Events(); this.run.leds = new Leds(); this.run.beams = null; this.terminal.begin(); this.select(-1); },
+    this.run = { head, paths, leds: new Leds(), events: new Events(), beams: null, tracked: new Tracked(), sensors: null, tracks: [], rows: [],
+      begin: () => { this.stale = passOf(this.run.events.generation); this.run.events = new Events(); this.run.leds = new Leds(); this.run.beams = null; this.run.tracked = new Tracked(); this.terminal.begin(); this.select(-1); },
       now: 0, duration: Math.max(head.duration_s, 1e-3), redraw: () => { this.dirty = true; },
       sensorsOf: async (robot) => parseSensors(await this.source.sensors(robot), head.sensors) };
     const redraw = this.run.redraw;
@@ -141,6 +141,8 @@ class App {
         run.beams = parseBeams(await this.source.beams());
         this.legend();
       }
+      for (let part; (part = await this.source.tracked(run.tracked.bytes)).byteLength > 0;) run.tracked.append(part);
+      element('tracker-part').hidden = run.tracked.times.length === 0;
       if (this.run.head.arena && this.run.head.arena.trails.length > 0) run.trails = parseTrails(await this.source.trails());
       this.rows();
       run.redraw();
@@ -306,7 +308,7 @@ class App {
     on('slider', 'input', () => { if (this.live) this.live.atEdge = false; this.seek(Number(element('slider').value)); this.timeline.show(this.run.now); });
     on('theme', 'click', () => { this.dark = !this.dark; this.theme(); });
     on('arena-fit', 'click', () => { element('follow').value = -1; this.arena.fit(); this.run.redraw(); });
-    for (const id of ['follow', 'trail', 'beams']) on(id, 'change', () => this.run.redraw());
+    for (const id of ['follow', 'trail', 'beams', 'tracker']) on(id, 'change', () => this.run.redraw());
     on('find', 'input', () => this.search());
     for (const id of ['find-track', 'find-failed']) on(id, 'change', () => this.search());
     on('find-next', 'click', () => this.step(true));
@@ -421,7 +423,7 @@ class App {
     this.dirty = false;
     const colours = this.colours();
     this.arena.draw(colours, { follow: Number(element('follow').value), trail: Number(element('trail').value),
-      beams: element('beams').checked, persist: Math.max(0.1 * speed, 0.02), selected: this.robot });
+      beams: element('beams').checked, tracker: element('tracker').checked, persist: Math.max(0.1 * speed, 0.02), selected: this.robot });
     this.timeline.draw(colours);
     // Positions come each 100 ms, bytes at once.
     this.terminal.draw(this.live && this.live.atEdge ? Math.max(run.now, this.live.state.time_s) : run.now);

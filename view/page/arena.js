@@ -144,6 +144,7 @@ export class ArenaView {
       const pose = path.robot ? poseAt(path, this.run.now) : null;
       if (pose) this.robot(path.name, pose, options.selected);
     });
+    if (options.tracker) this.tracked();
     if (this.ruler) this.measure();
     if (this.ghost) {
       g.beginPath();
@@ -192,6 +193,23 @@ export class ArenaView {
       g.fillStyle = this.grey(patch.grey);
       g.fill();
       if (patch.image) this.picture(patch);
+    }
+  }
+  /** Where the overhead tracker saw whom. */
+  tracked() {
+    const g = this.g, r = 1.25 * defaultRadius * this.scale;
+    g.strokeStyle = this.colours.tracker;
+    g.lineWidth = 1.2;
+    for (const { robot, x, y, heading } of this.run.tracked.at(this.run.now)) {
+      const [px, py] = this.at(x, y);
+      g.setLineDash([3, 3]);
+      g.beginPath();
+      g.arc(px, py, r, 0, 2 * Math.PI);
+      g.moveTo(px, py);
+      g.lineTo(px + 1.5 * r * Math.cos(heading), py - 1.5 * r * Math.sin(heading));
+      g.stroke();
+      g.setLineDash([]);
+      this.label(robot, x, y, -r - 8);
     }
   }
   /** What lay where when it was last recorded. */

@@ -54,6 +54,32 @@ export function parseTrails(buffer) {
   return trails;
 }
 
+/** What the overhead tracker saw, frame by frame: rows "t_s,arrives_s,frame,robot,x_m,y_m,theta_rad" as they come. */
+export class Tracked {
+  constructor() {
+    this.bytes = 0;
+    this.times = [];
+    this.frames = [];
+  }
+  append(buffer) {
+    this.bytes += buffer.byteLength;
+    for (const line of new TextDecoder().decode(buffer).split('\n')) {
+      const [time, , , robot, x, y, heading] = line.split(',');
+      if (heading === undefined || Number.isNaN(Number(time))) continue;  // the header
+      if (this.times.at(-1) !== Number(time)) {
+        this.times.push(Number(time));
+        this.frames.push([]);
+      }
+      this.frames.at(-1).push({ robot, x: Number(x), y: Number(y), heading: Number(heading) });
+    }
+  }
+  /** The latest frame at `time`. */
+  at(time) {
+    const i = countUpTo(this.times, time);
+    return i > 0 ? this.frames[i - 1] : [];
+  }
+}
+
 /** Does a loudspeaker of the arena play at `time`? */
 export function plays(speaker, time) {
   if (time < speaker.on) return false;

@@ -17,10 +17,10 @@ const kindColours = {
 
 const surfaces = {
   light: { strong: '#005aa0', back: '#ffffff', part: '#f4f5f7', line: '#d4d8de', text: '#1d2430', dim: '#606b7a', wall: '#5b616b',
-    thing: '#c9ced6', thingEdge: '#6d7683', lamp: '#e0a800', virtual: '#963282', outside: '#e9ecf0', cursor: '#c04b00', floor: [70, 255],
+    thing: '#c9ced6', thingEdge: '#6d7683', lamp: '#e0a800', virtual: '#963282', tracker: '#aa7800', outside: '#e9ecf0', cursor: '#c04b00', floor: [70, 255],
     grid: 'rgba(60,75,95,0.13)' },
   dark: { strong: '#6db5f0', back: '#14181f', part: '#1b2029', line: '#323a47', text: '#e2e7ee', dim: '#96a1b1', wall: '#8b94a3',
-    thing: '#4a5362', thingEdge: '#98a3b5', lamp: '#ffd34d', virtual: '#d68ac8', outside: '#0d1015', cursor: '#ff9a4d', floor: [12, 48],
+    thing: '#4a5362', thingEdge: '#98a3b5', lamp: '#ffd34d', virtual: '#d68ac8', tracker: '#e3b94a', outside: '#0d1015', cursor: '#ff9a4d', floor: [12, 48],
     grid: 'rgba(200,215,235,0.10)' },
 };
 

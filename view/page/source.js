@@ -13,6 +13,7 @@ class ServerSource {
   status() { return this.json('status'); }
   beams() { return this.bytes('beams'); }
   trails() { return this.bytes('trails'); }
+  tracked(from) { return this.bytes(`tracked?from=${from}`); }
   events(from) { return this.bytes(`events?from=${from}`); }
   leds(from) { return this.bytes(`leds?from=${from}`); }
   sensors(robot) { return this.bytes(`sensors?robot=${robot}`); }
@@ -35,6 +36,8 @@ class FileSource {
   poses() { return this.bytes('poses'); }
   status() { return this.json('status'); }
   beams() { return this.bytes('beams'); }
+  trails() { return this.bytes('trails'); }
+  async tracked(from) { return (await this.bytes('tracked')).slice(from); }
   events() { return this.bytes('events'); }
   leds() { return this.bytes('leds'); }
   sensors(robot) { return this.bytes(`sensors-${robot}`); }
