@@ -1,9 +1,9 @@
 #include "view/answers.h"
 
-#include "view/bytes.h"
-#include "view/camera_pictures.h"
 #include "view/page_parts.h"
-#include "view/serial_bytes.h"
+#include "view/recording/bytes.h"
+#include "view/recording/camera_pictures.h"
+#include "view/recording/serial_bytes.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,9 +2,9 @@
 // What a page asks for and gets: the parts of the page itself, and what was derived from the folder. Nothing
 // else has an address, so no address leads to a file.
 
+#include "view/events/read_events.h"
 #include "view/live/driver.h"
-#include "view/read_events.h"
-#include "view/recording.h"
+#include "view/recording/recording.h"
 
 #include <functional>
 #include <memory>

@@ -1,9 +1,9 @@
 #include "view/export_page.h"
 
 #include "base/error.h"
-#include "view/bytes.h"
-#include "view/camera_pictures.h"
 #include "view/page_parts.h"
+#include "view/recording/bytes.h"
+#include "view/recording/camera_pictures.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

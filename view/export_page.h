@@ -2,8 +2,8 @@
 // A recorded run as one HTML file: page and data together, for any browser, without puckloop and without a
 // network.
 
-#include "view/read_events.h"
-#include "view/recording.h"
+#include "view/events/read_events.h"
+#include "view/recording/recording.h"
 
 #include <cstddef>
 #include <string>

@@ -2,8 +2,8 @@
 // run's.
 
 #include "tests/view/results.h"
-#include "view/event_cache.h"
-#include "view/read_events.h"
+#include "view/events/event_cache.h"
+#include "view/events/read_events.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

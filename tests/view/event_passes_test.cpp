@@ -1,7 +1,7 @@
 // The events of a growing folder: read again while somebody looks on, and only what is new.
 
 #include "tests/view/results.h"
-#include "view/event_passes.h"
+#include "view/events/event_passes.h"
 
 #include <catch2/catch.hpp>
 

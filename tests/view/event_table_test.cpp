@@ -1,6 +1,6 @@
 // The table of events: numbers, texts, search, what is left out when there are too many.
 
-#include "view/event_table.h"
+#include "view/events/event_table.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // What a page of a run that goes on is sent: only what is new, and all of it again once the run went back.
 
 #include "tests/view/results.h"
-#include "view/live/feed.h"
+#include "view/recording/feed.h"
 
 #include <catch2/catch.hpp>
 

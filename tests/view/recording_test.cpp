@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "tests/view/results.h"
-#include "view/read_events.h"
-#include "view/recording.h"
+#include "view/events/read_events.h"
+#include "view/recording/recording.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // A sound is one spell, however often its wave passes 0.
 
-#include "view/sound_spells.h"
+#include "view/events/sound_spells.h"
 
 #include <catch2/catch.hpp>
 

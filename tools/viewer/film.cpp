@@ -5,8 +5,8 @@
 #include "base/partial_file.h"
 #include "base/text_file.h"
 #include "tools/viewer/headless_browser.h"
+#include "view/events/read_events.h"
 #include "view/export_page.h"
-#include "view/read_events.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

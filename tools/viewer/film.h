@@ -1,7 +1,7 @@
 #pragma once
 // A recorded run as pictures: one at an instant, or a film.
 
-#include "view/recording.h"
+#include "view/recording/recording.h"
 
 #include <optional>
 #include <string>

@@ -42,7 +42,7 @@ class RunPages {
     RunPages(const RunPages&) = delete;
     RunPages& operator=(const RunPages&) = delete;
 
-    /// As Answers::get(); "run/12/" and below is the page of run 12.
+    /// As Answers::get(); "run", its number and what is below are the page of run 12.
     std::optional<view::Content> get(std::string_view target);
 
     static constexpr std::size_t kMostOpen = 8;    ///< recordings in memory; the one opened first is closed

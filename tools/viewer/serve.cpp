@@ -2,9 +2,9 @@
 
 #include "tools/viewer/browser.h"
 #include "view/answers.h"
-#include "view/event_passes.h"
+#include "view/events/event_passes.h"
 #include "view/live/driver.h"
-#include "view/live/feed.h"
+#include "view/recording/feed.h"
 
 #include <fmt/format.h>
 

@@ -64,7 +64,7 @@ export class Live {
       });
     });
   }
-  /** The parts of a message (view/live/feed.h). */
+  /** The parts of a message (view/recording/feed.h). */
   take(message) {
     const bytes = new Bytes(message);
     while (bytes.at < message.byteLength) {

@@ -44,7 +44,7 @@ bool goes_by_chance(std::string_view name) {
 }
 
 Action tune(const std::string& name, double value) {
-    Action result = action(Verb::Tune, "robot0");
+    Action result = action(Verb::Tune, "e1");
     result.property = name;
     result.value = value;
     return result;

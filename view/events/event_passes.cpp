@@ -1,4 +1,4 @@
-#include "view/event_passes.h"
+#include "view/events/event_passes.h"
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 // What a page of a run that goes on is sent: its state when that changed, and where robots and things went
 // since the last message. One of them for each page.
 
-#include "view/recording.h"
+#include "view/recording/recording.h"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
-#include "view/event_cache.h"
+#include "view/events/event_cache.h"
 
 #include "base/version/version.h"
-#include "view/event_table.h"
+#include "view/events/event_table.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

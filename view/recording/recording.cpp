@@ -1,4 +1,4 @@
-#include "view/recording.h"
+#include "view/recording/recording.h"
 
 #include "base/csv.h"
 #include "base/error.h"
@@ -6,8 +6,8 @@
 #include "physics/render/arena_file.h"
 #include "physics/render/result_rows.h"
 #include "physics/world/booth_record.h"
-#include "view/arena_json.h"
-#include "view/bytes.h"
+#include "view/recording/arena_json.h"
+#include "view/recording/bytes.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,10 +2,10 @@
 // Reads the events of a results folder in a thread of its own: frames of all links by protocol, what became
 // of range-and-bearing frames, IRcom words, faults, resets, lines of logs, changes of LEDs.
 
-#include "view/event_cache.h"
-#include "view/event_table.h"
-#include "view/recording.h"
-#include "view/sound_spells.h"
+#include "view/events/event_cache.h"
+#include "view/events/event_table.h"
+#include "view/events/sound_spells.h"
+#include "view/recording/recording.h"
 
 #include <atomic>
 #include <chrono>

@@ -1,11 +1,11 @@
-#include "view/read_events.h"
+#include "view/events/read_events.h"
 
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/text_file.h"
 #include "traces/decode.h"
 #include "traces/rab_losses/results.h"
-#include "view/bytes.h"
+#include "view/recording/bytes.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

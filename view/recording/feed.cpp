@@ -1,7 +1,7 @@
-#include "view/live/feed.h"
+#include "view/recording/feed.h"
 
 #include "base/csv.h"
-#include "view/bytes.h"
+#include "view/recording/bytes.h"
 
 #include <limits>
 #include <span>

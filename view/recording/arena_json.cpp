@@ -1,4 +1,4 @@
-#include "view/arena_json.h"
+#include "view/recording/arena_json.h"
 
 #include "physics/description/booth.h"
 #include "physics/description/plan.h"

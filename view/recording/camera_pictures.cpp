@@ -1,4 +1,4 @@
-#include "view/camera_pictures.h"
+#include "view/recording/camera_pictures.h"
 
 #include "base/csv.h"
 #include "base/text_file.h"

@@ -1,7 +1,7 @@
-#include "view/event_table.h"
+#include "view/events/event_table.h"
 
 #include "base/error.h"
-#include "view/bytes.h"
+#include "view/recording/bytes.h"
 
 #include <unistd.h>
 

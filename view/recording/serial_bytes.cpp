@@ -1,4 +1,4 @@
-#include "view/serial_bytes.h"
+#include "view/recording/serial_bytes.h"
 
 #include "base/csv.h"
 #include "cosim/faults/fault_kind.h"

@@ -2,7 +2,7 @@
 // The events of a folder that grows: read again and again, each time from its begin, at times that leave the
 // processor to the run.
 
-#include "view/read_events.h"
+#include "view/events/read_events.h"
 
 #include <atomic>
 #include <cstdint>
