@@ -142,6 +142,7 @@ const std::vector<std::string> kFolders = {
     "campaigns/statistics",
     "campaigns/jobs",
     "campaigns",
+    "reproductions/density",
     "reproductions",
     "benchmark",
     "gap/stats",

@@ -7,6 +7,7 @@
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 #include "tools/commands/bench_bluetooth.h"
+#include "tools/commands/bench_density.h"
 #include "tools/commands/bench_network.h"
 #include "tools/commands/bench_rab.h"
 #include "tools/commands/bench_sound.h"
@@ -94,6 +95,7 @@ void declare_bench(Command& app, int& status) {
     declare_bench_sound(*command, status);
     declare_bench_bluetooth(*command, status);
     declare_bench_network(*command, status);
+    declare_bench_density(*command, status);
     command->callback([options, command, &status] {
         if (command->subcommand_given()) return;
         run_bench(*options);

@@ -10,6 +10,7 @@
 #include "reproductions/rab/picture.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/commands/assignment.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -29,22 +30,6 @@ struct RabOptions {
     std::filesystem::path out = "out/rab";
 };
 
-void take_parameters(RabOptions& options) {
-    for (const std::string& text : options.parameters) {
-        const auto equals = text.find('=');
-        std::size_t used = 0;
-        double value = 0.0;
-        try {
-            if (equals != std::string::npos) value = std::stod(text.substr(equals + 1), &used);
-        } catch (const std::exception&) {
-            used = 0;
-        }
-        if (equals == std::string::npos || used == 0 || used != text.size() - equals - 1)
-            throw InputError("", "--set", fmt::format("'{}' is not an assignment", text), "NAME=NUMBER");
-        options.measurement.parameters[text.substr(0, equals)] = value;
-    }
-}
-
 std::string readings_csv(const RabMeasured& measured, const std::vector<double>& distances) {
     std::string csv = "distance_cm,sender,received,late,strength,bearing_rad,bearing_true_rad\n";
     for (const RabReadingRow& row : measured.rows)
@@ -61,7 +46,7 @@ void run_rab(RabOptions& options, int& status) {
             what.distances.push_back(entry.distance);
     for (const double centimetres : options.distances_cm)
         what.distances.push_back(centimetres / kCentimetres);
-    take_parameters(options);
+    what.parameters = assignments_of(options.parameters);
     claim_folder(options.out, ".puckloop-bench", {"rab_errors.csv", "rab_readings.csv", "rab_errors.svg"});
     const bool terminal = ::isatty(STDERR_FILENO) == 1;
     const cosim::InterruptGuard interrupt;
