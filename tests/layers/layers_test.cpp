@@ -89,6 +89,8 @@ const std::vector<std::string> kFolders = {
     "scenarios/reader",
     "linuxboard/control",
     "linuxboard/coordinator",
+    "linuxboard/coordinator/experiments",
+    "linuxboard/coordinator/program",
     "linuxboard/record",
     "linuxboard/netmanager",
     "linuxboard/forward",

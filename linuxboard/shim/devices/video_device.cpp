@@ -1,7 +1,7 @@
 #include "linuxboard/shim/devices/video_device.h"
 
+#include "linuxboard/shim/devices/camera_spec.h"
 #include "linuxboard/shim/devices/ioctl_data.h"
-#include "linuxboard/shim/kernel/spec.h"
 #include "linuxboard/shim/wire/board_clock.h"
 #include "linuxboard/shim/wire/wire.h"
 
