@@ -70,24 +70,32 @@ std::string density_picture(const std::vector<DensityRow>& rows, const std::stri
     constexpr std::array<const char*, 6> kColours{"#005aa0", "#c85000", "#008264",
                                                   "#963282", "#aa7800", "#5a5a5a"};
     Chart chart("A neighbour within 0.5 m is heard", "robots", "share of 100 ms steps");
-    chart.caption(caption);
     std::vector<std::pair<std::string, int>> series;
-    for (const DensityRow& row : rows)
-        if (std::find(series.begin(), series.end(), std::pair(row.setting, row.bytes)) == series.end())
-            series.emplace_back(row.setting, row.bytes);
-    for (std::size_t i = 0; i < series.size(); ++i) {
+    std::vector<int> payloads;
+    for (const DensityRow& row : rows) {
+        const std::pair one(row.setting, row.bytes);
+        if (std::find(series.begin(), series.end(), one) == series.end()) series.push_back(one);
+        if (std::find(payloads.begin(), payloads.end(), row.bytes) == payloads.end())
+            payloads.push_back(row.bytes);
+    }
+    std::string dashed;
+    for (const auto& [setting, bytes] : series) {
         std::vector<double> x, y;
         for (const DensityRow& row : rows)
-            if (row.setting == series[i].first && row.bytes == series[i].second &&
-                row.density.neighbours.steps > 0) {
+            if (row.setting == setting && row.bytes == bytes && row.density.neighbours.steps > 0) {
                 x.push_back(row.robots);
                 y.push_back(row.density.neighbours.share_of_steps());
             }
-        const std::string colour = kColours[i % kColours.size()];
-        const bool other = series[i].first != series.front().first;
-        chart.line(x, y, colour, fmt::format("{}, {} bytes", series[i].first, series[i].second), other);
+        const auto payload =
+            static_cast<std::size_t>(std::find(payloads.begin(), payloads.end(), bytes) - payloads.begin());
+        const std::string colour = kColours[payload % kColours.size()];
+        const bool first = setting == series.front().first;
+        if (!first) dashed = "; dashed: " + setting;
+        chart.line(x, y, colour,
+                   first ? fmt::format("{} byte{}", bytes, bytes == 1 ? "" : "s") : std::string(), !first);
         chart.dots(x, y, colour);
     }
+    chart.caption(caption + dashed);
     chart.level(0.0);
     chart.level(1.0);
     chart.interval(2, kPublishedOfTwo, kPublishedOfTwo, kPublishedOfTwo, "#1d2430", "published");
