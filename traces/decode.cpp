@@ -35,7 +35,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const Decod
     std::map<std::string, Ends> ends;
     TraceSelection frames = trace.selection();
     if (frames.passes_over) frames.passes_over = [](std::string_view) { return true; };
-    RecordedTrace(trace.file(), frames).for_each_checked([&](const cosim::TraceRow& row) {
+    trace.with(frames).for_each_checked([&](const cosim::TraceRow& row) {
         if (watch.first) watch.first(row);
         const auto* frame = std::get_if<cosim::UartFrame>(&row.payload);
         if (frame == nullptr) return;
@@ -62,9 +62,10 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take, const Decod
         if (watch.second) watch.second(*row);
         while (const FaultMark* mark = faults.next(row->time))
             decode_mark(*mark, take);
-        if (const auto* frame = std::get_if<cosim::UartFrame>(&row->payload))
-            uarts[row->link]->add(*row, *frame);
-        else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row->payload))
+        if (const auto* frame = std::get_if<cosim::UartFrame>(&row->payload)) {
+            // A link that was not there before: the file is another one now, for its run went back.
+            if (const auto uart = uarts.find(row->link); uart != uarts.end()) uart->second->add(*row, *frame);
+        } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row->payload))
             i2c.add(*row, *phase);
         else if (const auto* signal = std::get_if<cosim::Signal>(&row->payload))
             static_cast<void>(rab.add(*row, *signal) || ircom.add(*row, *signal));

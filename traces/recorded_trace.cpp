@@ -58,13 +58,21 @@ RecordedTrace::RecordedTrace(const std::filesystem::path& place, TraceSelection 
     if (!std::filesystem::is_regular_file(status))
         throw InputError(file_.string(), "", "is no regular file, and is read more than once",
                          "a trace.csv that a run recorded, or its folder");
+    size_ = std::filesystem::file_size(file_, error);
+    if (error) size_ = 0;
     if (selection_.until_s <= selection_.from_s)
         throw InputError("", "--to", fmt::format("{} s is not after --from", selection_.until_s),
                          fmt::format("more than {} s", selection_.from_s));
 }
 
+RecordedTrace RecordedTrace::with(TraceSelection selection) const {
+    RecordedTrace other = *this;
+    other.selection_ = std::move(selection);
+    return other;
+}
+
 RecordedTrace::Cursor::Cursor(const RecordedTrace& trace)
-    : trace_(trace), in_(trace.file_, std::ios::binary), buffer_(kPiece) {
+    : trace_(trace), in_(trace.file_, std::ios::binary), left_(trace.size_), buffer_(kPiece) {
     const std::string file = trace.file_.string();
     if (!in_) throw InputError(file, "", std::strerror(errno), "a trace.csv that a run recorded");
     if (!read_line() || line_ != cosim::kTraceColumns)
@@ -86,16 +94,19 @@ bool RecordedTrace::Cursor::read_line() {
         const std::size_t size =
             line_ended_ ? static_cast<std::size_t>(static_cast<const char*>(found) - from) : end_ - begin_;
         if (size >= kLongestLine) refuse_long();
-        if (line_ended_ || !in_) {
+        if (line_ended_ || left_ == 0) {
             line_ = {from, size};
             begin_ = std::min(end_, begin_ + size + 1);
             return line_ended_ || size > 0;
         }
         std::memmove(buffer_.data(), from, size);
-        in_.read(buffer_.data() + size, static_cast<std::streamsize>(buffer_.size() - size));
+        const auto more = std::min<std::uintmax_t>(buffer_.size() - size, left_);
+        in_.read(buffer_.data() + size, static_cast<std::streamsize>(more));
+        const auto got = static_cast<std::size_t>(in_.gcount());
+        left_ = got < more ? 0 : left_ - got;
         begin_ = 0;
         looked = size;
-        end_ = size + static_cast<std::size_t>(in_.gcount());
+        end_ = size + got;
     }
 }
 

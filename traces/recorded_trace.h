@@ -3,6 +3,7 @@
 
 #include "cosim/trace/trace_row.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -37,11 +38,15 @@ class RecordedTrace {
     /// `place` is a trace.csv or the results folder that has one. Throws InputError: no such file, nothing
     /// that can be read twice, another format.
     RecordedTrace(const std::filesystem::path& place, TraceSelection selection);
+    /// The same rows under another selection.
+    RecordedTrace with(TraceSelection selection) const;
 
     const std::filesystem::path& file() const { return file_; }
     const TraceSelection& selection() const { return selection_; }
 
-    /// Rows in the order of the file, wanted ones only.
+    /// Rows in the order of the file, wanted ones only. Of a file that grows each of them reads what was
+    /// there when the trace was made: who reads it twice finds nothing in the second reading that the first
+    /// one did not see.
     class Cursor {
       public:
         explicit Cursor(const RecordedTrace& trace);
@@ -60,6 +65,7 @@ class RecordedTrace {
 
         const RecordedTrace& trace_;
         std::ifstream in_;
+        std::uintmax_t left_;  ///< bytes that may still be read of it
         std::vector<char> buffer_;
         std::size_t begin_ = 0, end_ = 0;  ///< of what is read and not taken yet
         std::string_view line_;
@@ -75,6 +81,7 @@ class RecordedTrace {
   private:
     std::filesystem::path file_;
     TraceSelection selection_;
+    std::uintmax_t size_ = 0;  // bytes of it that count
 };
 
 /// Throws InputError if no file can be written at `path` ("-" always can): known before the work is done.

@@ -269,3 +269,54 @@ TEST_CASE("no damaged trace brings decoding down") {
     CHECK(none.status == 2);
     CHECK_THAT(none.out, Catch::Contains("no such file"));
 }
+
+TEST_CASE("a trace that grows meanwhile is decoded as far as it was at the beginning") {
+    Talk talk;
+    const std::vector<std::uint8_t> some{0x41, 0x42};
+    talk.say("robot0.uart1", "robot0.pic", some);
+    const std::string file = write_trace("grows.csv", talk.rows);
+    Talk late = talk;
+    late.rows.clear();
+    late.say("robot1.uart1", "robot1.pic", some);
+    std::ifstream more(write_trace("grows_more.csv", late.rows));
+    std::string header, added;
+    std::getline(more, header);
+    std::stringstream rest;
+    rest << more.rdbuf();
+    added = rest.str();
+    // A line that nobody knew of comes between the two readings.
+    bool grown = false;
+    std::size_t bytes = 0;
+    const tools::RecordedTrace trace(file, {});
+    tools::decode_trace(trace,
+                        [&](const DecodedFrame& frame) { bytes += frame.link == "robot0.uart1" ? 1 : 100; },
+                        {[&](const TraceRow&) {
+                             if (!grown) std::ofstream(file, std::ios::app) << added << std::flush;
+                             grown = true;
+                         },
+                         {}});
+    CHECK(grown);
+    CHECK((bytes > 0 && bytes < 100));
+    std::size_t rows = 0;
+    trace.for_each_checked([&](const TraceRow&) { ++rows; });
+    CHECK(rows == talk.rows.size());
+    rows = 0;
+    tools::RecordedTrace(file, {}).for_each_checked([&](const TraceRow&) { ++rows; });
+    CHECK(rows == talk.rows.size() + late.rows.size());
+}
+
+TEST_CASE("a trace whose run went back between two readings has other links") {
+    Talk talk;
+    const std::vector<std::uint8_t> some{0x41, 0x42, 0x43};
+    talk.say("robot0.uart1", "robot0.pic", some);
+    const std::string file = write_trace("back.csv", talk.rows);
+    Talk other;
+    other.say("robot1.uart1", "robot1.pic", some);
+    tools::decode_trace(tools::RecordedTrace(file, {}),
+                        [&](const DecodedFrame& frame) { CHECK(frame.link != "robot1.uart1"); },
+                        {[&](const TraceRow&) {
+                             const std::string again = write_trace("back_again.csv", other.rows);
+                             std::ofstream(file) << std::ifstream(again).rdbuf();
+                         },
+                         {}});
+}

@@ -132,6 +132,7 @@ export class ArenaView {
     if (followed) this.centre = { x: followed.x, y: followed.y };
     this.g = g;
     this.colours = colours;
+    this.named = [];
     g.fillStyle = colours.outside;
     g.fillRect(0, 0, width, height);
     this.floor();
@@ -140,10 +141,13 @@ export class ArenaView {
     this.things(options);
     if (options.trail > 0) this.trails(options.trail);
     if (options.beams && this.run.beams) this.beams(options.persist);
-    this.run.paths.forEach((path) => {
-      const pose = path.robot ? poseAt(path, this.run.now) : null;
+    // The chosen robot first: its name is the one that stays.
+    const chosen = this.run.head.stations[options.selected];
+    const robots = this.run.paths.filter((path) => path.robot).sort((a, b) => (b.name === chosen) - (a.name === chosen));
+    for (const path of robots) {
+      const pose = poseAt(path, this.run.now);
       if (pose) this.robot(path.name, pose, options.selected);
-    });
+    }
     if (options.tracker) this.tracked();
     if (this.ruler) this.measure();
     if (this.ghost) {
@@ -328,10 +332,14 @@ export class ArenaView {
     g.fill();
     this.label(booth.name, booth.x - 0.06 * c, booth.y - 0.06 * s, 14);
   }
+  /** Where there is room: what would lie over another name is left out. */
   label(text, x, y, below) {
     if (!text) return;
     const g = this.g, [px, py] = this.at(x, y);
     g.font = '11px system-ui, "DejaVu Sans", sans-serif';
+    const half = g.measureText(text).width / 2 + 1, top = py + below - 6;
+    if (this.named.some((one) => Math.abs(one.x - px) < one.half + half && Math.abs(one.top - top) < 11)) return;
+    this.named.push({ x: px, top, half });
     g.textAlign = 'center';
     g.textBaseline = 'middle';
     g.lineWidth = 3;
