@@ -502,6 +502,7 @@ export class ArenaView {
     g.lineCap = 'butt';
   }
   measure() {
+    this.named = [];  // it is what one asks for
     const { from, to } = this.ruler, g = this.g;
     g.strokeStyle = this.colours.text;
     g.lineWidth = 1.5;
