@@ -16,7 +16,7 @@ namespace puckloop::gap::report {
 namespace {
 
 constexpr double kWide = 336, kHigh = 230;    // half an A4 line at 96 a inch
-constexpr const char* kExtended = "#2e7d4f";  // told apart in black-and-white print too
+constexpr const char* kExtended = "#008264";  // told apart in black-and-white print too
 constexpr double kNinety = 1.645;             // standard deviations of a 90 % band
 constexpr std::size_t kMostPictures = 6;      // of tables: the largest
 

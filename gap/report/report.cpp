@@ -22,9 +22,9 @@ h2 { font-size: 11.5pt; margin: 7mm 0 2mm; border-bottom: 1px solid #999; break-
 h3 { font-size: 10pt; margin: 4mm 0 1mm; break-after: avoid; }
 .about { color: #555; font-size: 8.5pt; margin: 0 0 4mm; }
 .verdict { border: 1.5px solid #444; border-left-width: 5mm; padding: 3mm 4mm; margin: 3mm 0; break-inside: avoid; }
-.verdict.named { border-color: #2e7d4f; } .verdict.no_effect { border-color: #777; }
-.verdict.cannot_tell { border-color: #b8860b; } .verdict.unexplained { border-color: #a33; }
-.verdict.not_identifiable { border-color: #b8860b; }
+.verdict.named { border-color: #005aa0; } .verdict.no_effect { border-color: #777; }
+.verdict.cannot_tell { border-color: #aa7800; } .verdict.unexplained { border-color: #c85000; }
+.verdict.not_identifiable { border-color: #aa7800; }
 .verdict .word { font-size: 13pt; font-weight: bold; }
 .verdict p { margin: 1.5mm 0; }
 table { border-collapse: collapse; width: 100%; font-size: 8.5pt; margin: 1mm 0 3mm; }
