@@ -223,7 +223,7 @@ void Twi::end_transfer(Cycle next) {
 bool Twi::asks_first_bit() {
     const unsigned code = state_code();
     if (!state_.owner || state_.shared || (code != kMrAddressAck && code != kMrDataAck)) return false;
-    begin_phase(Kind::Acknowledge, 0, cosim::kNoByteFollows != 0);
+    begin_phase(Kind::Acknowledge, 0, true);  // kNoByteFollows
     state_.first_bit_asked = true;
     return true;
 }
