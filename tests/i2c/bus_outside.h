@@ -107,7 +107,7 @@ class Outside {
         }
         const Time at = now + (random_.below(2) == 0 ? 1 : pick(50 * kMicrosecond));
         const bool refused = answer.kind == I2cPhaseKind::BusLost || answer.ack == 0;
-        const std::uint64_t what = random_.below(refused ? 2 : 12);
+        const std::uint64_t what = random_.below(refused ? 2 : 16);
         if (what < 2) {
             if (answer.kind != I2cPhaseKind::BusLost) send(master, I2cPhaseKind::Stop, 0, at);
             begin(master, at + pick(500 * kMicrosecond));
@@ -116,9 +116,9 @@ class Outside {
         } else if (answer.kind == I2cPhaseKind::Data && what == 4) {  // and goes on, against a NACK
             send(master, I2cPhaseKind::Acknowledge, 0, at);
             send(master, I2cPhaseKind::Write, 0xA5, at + 1);
-        } else if (what == 5) {  // a STOP or START follows
+        } else if (what == 12) {  // a STOP or START follows
             send(master, I2cPhaseKind::Acknowledge, 0, at, kNoByteFollows);
-        } else if (what == 6) {
+        } else if (what == 13) {
             send(master, I2cPhaseKind::Data, static_cast<std::uint8_t>(random_.below(256)), at,
                  loose_clocks());
         } else if (answer.kind == I2cPhaseKind::Data || what == 3) {
