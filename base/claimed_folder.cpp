@@ -81,6 +81,8 @@ void refuse_foreign_results(const fs::path& folder, const std::string& mark,
         const fs::path file = folder / name;
         const fs::file_status status = fs::symlink_status(file, failed);
         if (fs::is_symlink(status)) throw InputError(file.string(), "", why_not_written(ELOOP), kOwnFolder);
+        if (fs::is_other(status))  // opening a pipe would wait for its reader
+            throw InputError(file.string(), "", "is a pipe, a socket or a device, no file", kOwnFolder);
         if (fs::exists(status) && !ours.contains(name))
             throw InputError(
                 file.string(), "",

@@ -1,5 +1,7 @@
 #include "bench/i2c_script_master.h"
 
+#include "cosim/i2c/i2c_shared.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -84,6 +86,9 @@ Time I2cScriptMaster::limit() const {
 
 void I2cScriptMaster::begin() {
     const Step& step = steps_[step_];
+    if (sends_ && (step.kind == I2cPhaseKind::Stop || step.kind == I2cPhaseKind::Start))
+        return ask_first_bit();
+    sends_ = false;
     I2cPhase phase{step.kind, step.byte, step.ack, next_, clock_, 0};
     if (step.kind == I2cPhaseKind::Start) {
         ++report_.starts;
@@ -106,6 +111,22 @@ void I2cScriptMaster::begin() {
     if (++step_ == steps_.size()) next_line();
 }
 
+void I2cScriptMaster::ask_first_bit() {
+    open_ = I2cPhase{I2cPhaseKind::Acknowledge, 0, cosim::kNoByteFollows, next_, clock_, 0};
+    target_.i2c_slave_phase(*open_);
+}
+
+/// Of the byte that the slave has to send.
+void I2cScriptMaster::first_bit_known(bool low, Time now) {
+    open_.reset();
+    sends_ = false;
+    next_ = now + clock_;
+    Step nine_clocks;
+    nine_clocks.kind = I2cPhaseKind::Read;
+    nine_clocks.frees = true;
+    if (low) steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(step_), nine_clocks);
+}
+
 void I2cScriptMaster::next_line() {
     ++report_.played;
     const Time free = next_;
@@ -117,8 +138,12 @@ void I2cScriptMaster::next_line() {
 
 void I2cScriptMaster::answered(const I2cPhase& answer, Time now) {
     if (!open_) return;  // given up
+    if (open_->kind == I2cPhaseKind::Acknowledge) return first_bit_known(answer.ack != 0, now);
     I2cPhase phase = *open_;
     open_.reset();
+    const bool reads = phase.kind == I2cPhaseKind::Start && (phase.byte & kReadBit) != 0;
+    sends_ = reads ? answer.ack != 0 : phase.kind == I2cPhaseKind::Read && phase.ack != 0;
+    const bool frees = steps_[step_].frees;
     phase.stretch = answer.stretch;
     report_.stretched += answer.stretch;
     report_.longest_stretch = std::max(report_.longest_stretch, answer.stretch);
@@ -126,13 +151,13 @@ void I2cScriptMaster::answered(const I2cPhase& answer, Time now) {
     ++step_;
     if (phase.kind == I2cPhaseKind::Read) {
         phase.byte = answer.byte;
-        ++report_.bytes_read;
-        if (!reading_ && report_.reads.size() < kMostReads) {
+        report_.bytes_read += frees ? 0 : 1;
+        if (!frees && !reading_ && report_.reads.size() < kMostReads) {
             const I2cScriptLine& line = script_[line_];
             report_.reads.push_back({line.time, raw_ ? addressed_ : line.address, line.register_number, {}});
             reading_ = true;
         }
-        if (reading_) report_.reads.back().bytes.push_back(answer.byte);
+        if (reading_ && !frees) report_.reads.back().bytes.push_back(answer.byte);
     } else {
         phase.ack = answer.ack;
         if (phase.kind == I2cPhaseKind::Write)  // a slave that sends pulls SDA low

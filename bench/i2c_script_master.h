@@ -4,7 +4,8 @@
 // it (STOP and START take one each). A byte takes nine clocks and what the slave stretches them; a STOP and a
 // repeated START take one. The master never gives up on a byte that is not acknowledged: it sends STOP and
 // goes on with the next line. A raw line does what it states, whatever the slave answers; the bytes that it
-// reads are reported with the address byte before them.
+// reads are reported with the address byte before them. A STOP or START that the first bit of a slave's next
+// byte prevents comes behind nine clocks with SDA let go, as drivers free a bus.
 //
 // Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus states 25 to 35 ms,
 // Linux drivers wait up to a second; the firmware known here holds it for 2 ms). The script then ends.
@@ -67,10 +68,13 @@ class I2cScriptMaster {
         cosim::I2cPhaseKind kind = cosim::I2cPhaseKind::Stop;
         std::uint8_t byte = 0;
         std::uint8_t ack = 0;
-        int clocks = 9;  ///< fewer: the next step breaks it off
+        int clocks = 9;      ///< fewer: the next step breaks it off
+        bool frees = false;  ///< clocks that free SDA, no byte of the script's
     };
     void plan();
     void plan_raw(const std::vector<I2cRawStep>& raw);
+    void ask_first_bit();
+    void first_bit_known(bool low, cosim::Time now);
     void next_line();
     void refused(const cosim::I2cPhase& phase);
 
@@ -87,6 +91,7 @@ class I2cScriptMaster {
     bool reading_ = false;         // this line's read has begun to return bytes
     std::uint16_t addressed_ = 0;  // by the newest address byte
     bool raw_ = false;             // this line goes on whatever is answered
+    bool sends_ = false;           // the slave has a byte to send next
     I2cScriptReport report_;
 };
 

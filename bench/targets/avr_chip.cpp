@@ -147,6 +147,7 @@ class AvrChip final : public AvrTarget, private avr::Pins {
 
     /// The line of the log is written when the phase is answered, or given up.
     void to_devices(const cosim::I2cPhase& phase) {
+        if (phase.kind == cosim::I2cPhaseKind::Acknowledge) return devices_->phase(phase);  // no byte's
         if (open_) listener().i2c_phase(kI2cDeviceUnit, *open_);
         open_.reset();
         if (phase.kind == cosim::I2cPhaseKind::Stop)

@@ -2,6 +2,7 @@
 
 #include "base/archive.h"
 #include "cosim/core/message_state.h"
+#include "cosim/i2c/i2c_shared.h"
 
 #include <algorithm>
 
@@ -87,9 +88,13 @@ cosim::Time DspicTarget::next_step(cosim::Time until) {
 }
 
 void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
-    // The ninth clock of the byte before, or a low SDA found in it: nobody is asked.
-    if (phase.kind == cosim::I2cPhaseKind::Acknowledge || phase.kind == cosim::I2cPhaseKind::BusLost) {
-        if (devices_ && unit == kI2cDeviceUnit) devices_->phase(phase);
+    // Clocks that are no byte's, the ninth of the byte before, or a low SDA found in it.
+    if (phase.kind == cosim::I2cPhaseKind::Acknowledge || phase.kind == cosim::I2cPhaseKind::BusLost ||
+        phase.kind == cosim::I2cPhaseKind::Data) {
+        if (devices_ && unit == kI2cDeviceUnit)
+            devices_->phase(phase);
+        else if (phase.ack != 0)  // who is here follows whole bytes only
+            chip_->i2c_answer_at(unit, cosim::free_line(phase), dspic::i2c_ninth_clock_end(phase));
         return;
     }
     std::optional<cosim::I2cPhase>& open = bus(unit).open;

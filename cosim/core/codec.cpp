@@ -145,7 +145,8 @@ Payload ByteReader::payload() {
         I2cPhase phase;
         phase.kind = enumerator(I2cPhaseKind::BusLost);
         phase.byte = u8();
-        phase.ack = boolean() ? 1 : 0;
+        phase.ack = u8();
+        if (phase.ack > kMostI2cAck) fail("I2C phase with an acknowledge out of range");
         phase.start = time();
         phase.clock_period = time();
         phase.stretch = time();

@@ -60,10 +60,12 @@ enum class I2cPhaseKind : std::uint8_t {
     BusLost,      ///< to the master: arbitration lost or bus stuck
 };
 
+inline constexpr std::uint8_t kMostI2cAck = 0x89;  ///< of I2cPhase::ack
+
 struct I2cPhase {
     I2cPhaseKind kind = I2cPhaseKind::Stop;
     std::uint8_t byte = 0;  ///< address byte or data
-    std::uint8_t ack = 0;   ///< 1: acknowledged (SDA low in the ninth clock)
+    std::uint8_t ack = 0;   ///< 1: acknowledged (SDA low in the ninth clock); more: cosim/i2c/i2c_shared.h
     Time start = 0;         ///< when the phase began on the bus
     Time clock_period = 0;  ///< of the master's SCL, in picoseconds
     Time stretch = 0;       ///< how long the slave held SCL beyond the master's clock

@@ -133,11 +133,13 @@ void I2cBusNode::phase_from(PortIndex port, const I2cPhase& phase) {
         break;
     case I2cPhaseKind::Acknowledge:
         if (owns && phase.ack == 0) not_acknowledged(phase);
+        if (owns && phase.ack != 0 && !pending_) ask_first_bit(port, phase);
         break;
     case I2cPhaseKind::BusLost:
         if (owns && !pending_) acknowledge_was_in_the_way(port, phase);
         break;
     case I2cPhaseKind::Data:
+        if (owns && !pending_ && LooseClocks::of(phase.ack).valid()) begin_loose(port, phase);
         break;
     }
 }
@@ -264,7 +266,8 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
     out.kind = kind;
     out.byte = kind == I2cPhaseKind::Data ? reply.byte : phase.byte;
     out.ack = kind == I2cPhaseKind::Data ? phase.ack : (reply.acknowledge ? 1 : 0);
-    if (kind == I2cPhaseKind::Data && !read_ && reply.acknowledge) out.ack = kDeviceAcknowledges;
+    held_ = kind == I2cPhaseKind::Data && !read_ && reply.acknowledge;
+    if (held_) out.ack = kDeviceAcknowledges;
     out.stretch = reply.stretch;
     // What ends within the low half of a clock lengthens nothing on the wires.
     const bool stretched = reply.stretch > half_clock();

@@ -41,7 +41,9 @@
 // ones; who writes to devices that are to send finds SDA the and of both, is acknowledged by nobody, and has
 // lost the bus at its first 1 against a 0: the devices are then in the middle of a byte and hold SDA low. The
 // ninth clock of a byte read may come after it, as an Acknowledge with ack = 0 from the master: the devices
-// send no more until the next START.
+// send no more until the next START. Before a STOP or a repeated START where devices are to send a byte a
+// master asks for their first bit (kNoByteFollows in i2c_shared.h), which may be in the way. Clocks that are
+// out of step with the bytes of devices that receive come as LooseClocks (i2c_bus_loose.cpp).
 //
 // A master that loses patience sends its Stop while a device still holds SCL low: nobody can use the bus
 // until the device lets go. If it then holds SDA low, being in the middle of a byte, the bus is free once a
@@ -128,6 +130,7 @@ class I2cBusNode final : public Node {
         archive(stuck_since_, stuck_for_, stuck_names_, changes_, contenders_, waiting_, answers_);
         archive(emitted_at_, counters_, log_, now_, faults_, line_released_, incomplete_byte_);
         archive(sharers_, turns_, reads_, ninth_, given_, refusing_, line_low_, announce_, byte_read_);
+        archive(loose_bits_, held_);
     }
 
     struct Contender {
@@ -171,11 +174,16 @@ class I2cBusNode final : public Node {
         std::uint8_t flipped = 0;  ///< bits of the byte read that arrive inverted
         bool lost = false;         ///< to the master the bus is lost
         Time busy_until = 0;       ///< and somebody else's until then
+        int clocked = 0;           ///< of LooseClocks: those that are over ...
+        std::uint8_t line = 0xFF;  ///< ... SDA in the first eight ...
+        bool ninth_low = false;    ///< ... and in the ninth
 
         template <class Archive>
         void state(Archive& archive) {
             archive(master, phase, earliest, open, answer, who, count);
             archive(addresses, flipped, lost, busy_until);
+            archive.bounded(clocked, 0, 9);
+            archive(line, ninth_low);
         }
     };
 
@@ -216,6 +224,15 @@ class I2cBusNode final : public Node {
     void let_go(const I2cPhase& phase);
     void sda_held();
     void acknowledge_was_in_the_way(PortIndex port, const I2cPhase& phase);
+    void ask_first_bit(PortIndex port, const I2cPhase& phase);
+    void settle_first_bit();
+    void begin_loose(PortIndex port, const I2cPhase& phase);
+    void go_on_loose();
+    bool ask_loose();
+    void in_the_way();
+    bool is_prompt(PortIndex device) const {
+        return options_.devices[device - options_.masters.size()].prompt;
+    }
     void recover(Time from);
     const std::string& device_name(PortIndex port) const;
     std::string device_list() const;
@@ -283,6 +300,8 @@ class I2cBusNode final : public Node {
     bool line_low_ = false;            // somebody acknowledges it
     bool announce_ = false;            // the sharers are to be informed with their answer
     std::uint8_t byte_read_ = 0;
+    std::uint8_t loose_bits_ = 0;   // of the devices' byte, by clocks out of step
+    bool held_ = false;             // devices acknowledge it in the clock that comes
     std::vector<Message> answers_;  // known, to leave with this advance
     Time emitted_at_ = 0;
     Counters counters_;

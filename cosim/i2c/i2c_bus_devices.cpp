@@ -101,7 +101,8 @@ void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
         }
         for (I2cSlave* slave : addressed_)
             ask_device(*slave, seen);
-        finished_ = finished_ || (read_ && (write || phase.ack == 0));
+        const bool refuses = write ? phase.ack != kBehindNinthClock : phase.ack == 0;
+        finished_ = finished_ || (read_ && refuses);
     }
     settle();
 }
@@ -124,8 +125,7 @@ void I2cBusNode::ask_device(I2cSlave& slave, const I2cPhase& seen) {
 void I2cBusNode::not_acknowledged(const I2cPhase& phase) {
     finished_ = true;
     for (const PortIndex device : addressed_devices_)
-        if (!options_.devices[device - options_.masters.size()].prompt)
-            answers_.push_back({phase.start + told_after(device), device, phase});
+        if (!is_prompt(device)) answers_.push_back({phase.start + told_after(device), device, phase});
 }
 
 /// One more device has answered what is pending: both lines are low if any device pulls them low.
@@ -155,6 +155,8 @@ void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now
 /// Answers the master once everybody has answered.
 void I2cBusNode::settle() {
     if (!pending_->open.empty()) return;
+    if (pending_->phase.kind == I2cPhaseKind::Data) return go_on_loose();
+    if (pending_->phase.kind == I2cPhaseKind::Acknowledge) return settle_first_bit();
     Pending done = *pending_;
     pending_.reset();
     if (done.master == kFault) return go_on_incomplete(done.answer.acknowledge);

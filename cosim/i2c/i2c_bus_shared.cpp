@@ -40,6 +40,7 @@ bool I2cBusNode::shares(PortIndex port) const {
 
 /// What a sharer does next. One that awaits an answer can only give up.
 void I2cBusNode::turn_from(PortIndex port, const I2cPhase& phase) {
+    if (phase.kind == I2cPhaseKind::Data) return;  // of a master that is alone only
     const auto is_port = [port](const Contender& other) { return other.port == port; };
     const bool has_turn = std::any_of(turns_.begin(), turns_.end(), is_port) ||
                           std::any_of(refusing_.begin(), refusing_.end(), is_port) ||

@@ -80,7 +80,8 @@ void put_hex(std::string& out, unsigned value) {
 
 // cosim/i2c/i2c_shared.h, which is above this folder.
 constexpr std::uint8_t kBehindNinthClock = 2, kDeviceAcknowledges = 3;
-constexpr std::string_view kBehindNinth = "write+ninth", kDeviceHolds = "data+device";
+constexpr std::string_view kBehindNinth = "write+ninth", kDeviceHolds = "data+device",
+                           kLooseClocks = "clocks+";
 
 void put_phase(std::string& out, const I2cPhase& phase) {
     if (phase.kind == I2cPhaseKind::Acknowledge) {
@@ -93,6 +94,11 @@ void put_phase(std::string& out, const I2cPhase& phase) {
     }
     if (phase.kind == I2cPhaseKind::Data && phase.ack == kDeviceAcknowledges) {
         out += kDeviceHolds;
+        return;
+    }
+    if (phase.kind == I2cPhaseKind::Data && phase.ack > kDeviceAcknowledges) {  // LooseClocks
+        out += kLooseClocks;
+        put_hex(out, phase.ack);
         return;
     }
     out += kPhases.at(static_cast<std::size_t>(phase.kind));
@@ -314,6 +320,14 @@ I2cPhase parse_phase(const Parser& in) {
     } else if (text == kBehindNinth || text == kDeviceHolds) {
         phase.kind = text == kBehindNinth ? I2cPhaseKind::Write : I2cPhaseKind::Data;
         phase.ack = text == kBehindNinth ? kBehindNinthClock : kDeviceAcknowledges;
+    } else if (text.starts_with(kLooseClocks)) {
+        phase.kind = I2cPhaseKind::Data;
+        unsigned ack = 0;
+        const char* const end = text.data() + text.size();
+        const auto [rest, error] = std::from_chars(text.data() + kLooseClocks.size(), end, ack, 16);
+        if (error != std::errc() || rest != end || ack > kMostI2cAck)
+            in.fail(fmt::format("\"{}\" is no I2C phase", text), "clocks+ and two hexadecimal digits");
+        phase.ack = static_cast<std::uint8_t>(ack);
     } else if (named != kPhases.end() && !text.empty() && text != "read") {
         phase.kind = static_cast<I2cPhaseKind>(named - kPhases.begin());
     } else {

@@ -22,8 +22,8 @@ class I2cDeviceTimes {
     /// The phase, moved where a bus that passes it on late, or a master faster than the fastest, would break
     /// that promise.
     cosim::I2cPhase held(cosim::I2cPhase phase, cosim::Time now) const {
-        if (phase.kind == cosim::I2cPhaseKind::Stop || phase.kind == cosim::I2cPhaseKind::Acknowledge)
-            return phase;
+        const bool answered = phase.kind != cosim::I2cPhaseKind::Acknowledge || phase.ack != 0;
+        if (phase.kind == cosim::I2cPhaseKind::Stop || !answered) return phase;
         phase.clock_period = std::max(phase.clock_period, fastest_period_);
         phase.start = std::max(phase.start, now + lookahead() - kClocksToAnswer * phase.clock_period);
         return phase;

@@ -1,5 +1,6 @@
 #include "emu/pic/pic_node.h"
 
+#include "cosim/i2c/i2c_shared.h"
 #include "emu/board/chip_json.h"
 #include "emu/camera/frame_log.h"
 
@@ -136,8 +137,13 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
         outbox_->push_back({reached(phase.start), kI2c, phase});
         return;
     }
-    if (phase.kind == cosim::I2cPhaseKind::Acknowledge) return;  // nobody is asked
     const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);
+    // The camera, which alone may be here, follows whole bytes only.
+    if (phase.kind == cosim::I2cPhaseKind::BusLost) return;
+    if (phase.kind == cosim::I2cPhaseKind::Acknowledge || phase.kind == cosim::I2cPhaseKind::Data) {
+        if (phase.ack != 0) chip_->i2c_answer_at(unit, cosim::free_line(phase), answered);
+        return;
+    }
     const Board::OwnPhase own = board_.own_i2c(phase, chip_->clock().first_cycle_at(answered));
     if (own.answer) chip_->i2c_answer_at(unit, *own.answer, answered);
     if (!own.ours) chip_->pause_at(bus_.phase(phase));

@@ -42,6 +42,7 @@ void I2cWatch::answer(const cosim::I2cPhase& answer, Time now) {
         read(answer.byte, now);
         return;
     }
+    if (open_.kind == I2cPhaseKind::Read) return;  // what is on SDA behind a byte that was read
     const bool start = open_.kind == I2cPhaseKind::Start;
     if (start && answer.ack == 0 && open_.byte >> 1 != kAddress) return;
     if (start) ++counters_.transfers;

@@ -1,5 +1,7 @@
 #include "emu/tam_avr/board.h"
 
+#include "cosim/i2c/i2c_shared.h"
+
 #include <algorithm>
 
 namespace puckloop::tam {
@@ -196,6 +198,8 @@ void Board::twi_phase(const cosim::I2cPhase& phase) {
     case cosim::I2cPhaseKind::Write:
         answer.ack = addressed_ && leds_.write(phase.byte);
         break;
+    case cosim::I2cPhaseKind::Acknowledge:  // no byte follows: the driver follows whole bytes only
+        return chip_.twi_answer_at(cosim::free_line(phase), phase.start + kClocksOfByte * phase.clock_period);
     default:
         answer.kind = cosim::I2cPhaseKind::Data;
         answer.byte = addressed_ ? leds_.read() : std::uint8_t{0xFF};

@@ -169,3 +169,22 @@ TEST_CASE("a sender at another rate gives the garbage that its waveform has") {
     rig.chip.run_until(rig.chip.now() + 30 * kBit);
     CHECK((rig.chip.peek("UCSR1A") & 0x90) == 0x90);
 }
+
+// The ledger and docs/measured_silicon.md state it (the measurement itself: measured_silicon_test.cpp).
+TEST_CASE("as SPI master XCK's first half period begins two clocks after the write to UDRn") {
+    for (const Cycle half : {1, 4, 200}) {
+        INFO("half period " << half);
+        Rig rig("        sbi DDRB, 0\n        ldi r16, 0x18\n        out DDRD, r16\n        ldi r16, 0xC0\n"
+                "        sts UCSR1C, r16\n        ldi r16, 0x08\n        sts UCSR1B, r16\n        ldi r16, " +
+                std::to_string(half - 1) +
+                "\n        sts UBRR1L, r16\n        ldi r16, 1\n        ldi r24, 0x55\n"
+                "        sts UDR1, r24\n        out PORTB, r16\nend:    rjmp end\n");
+        rig.run(5000);
+        const auto mark = rig.changes({PortLetter::B, 0}), xck = rig.changes({PortLetter::D, 4});
+        REQUIRE(mark.size() == 1);
+        REQUIRE(xck.size() == 16);
+        // OUT is the clock after the write.
+        CHECK(xck[0] - mark[0] == 1 + half);
+        CHECK(xck[15] - xck[0] == 15 * half);
+    }
+}

@@ -37,6 +37,8 @@ std::vector<Message> some_messages() {
     return {{1, 0, frame},
             {1, 1, damaged},
             {2, 65535, phase},
+            {2, 1, I2cPhase{I2cPhaseKind::Read, 0, 2, 1, 2500000, 0}},  // cosim/i2c/i2c_shared.h
+            {2, 1, I2cPhase{I2cPhaseKind::Data, 0xff, kMostI2cAck, 1, 2500000, 0}},
             {kNever, 3, Signal{7, -0.25}},
             {9, 1, some_radio_frame()},
             {9, 1, can},

@@ -224,8 +224,9 @@ TEST_CASE("answers that the computer does not read are lost, and the run's repor
     const LiveLine program(Kind::Pty, run.place("a.computer"));
     program.send("one\n");
     CHECK(program.read_until("yes\n") == "yes\n");
-    // 24 kB of answers, and the terminal keeps a good 12; the robot's own buffer holds 512 bytes.
-    constexpr std::size_t kBursts = 15, kLines = 400;
+    // 72 kB of answers; the terminal keeps 12 to 21, by how they come in. The robot's own buffer holds 512
+    // bytes.
+    constexpr std::size_t kBursts = 45, kLines = 400;
     for (std::size_t burst = 1; burst <= kBursts; ++burst) {
         program.send(std::string(kLines, '\n'));
         const std::size_t answers = 4 * (1 + kLines * burst);
@@ -234,14 +235,22 @@ TEST_CASE("answers that the computer does not read are lost, and the run's repor
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         REQUIRE(run.received("a.computer").size() == answers);
     }
-    const std::string got = program.read_until("nothing ends so", 2.0);
+    // A run that stood still hurries after the wall clock, while bytes leave for the terminal at the line's
+    // rate: what is on its way cannot be known from outside. It is there, or is lost, once the run is over,
+    // and the terminal is then gone with what it held. What adds up to the last byte is tested where it can
+    // be waited for (tests/exec/live_end_test.cpp); here nobody reads any more.
     run.process->signal(SIGINT);
     const Ended ended = run.process->wait();
     CHECK_THAT(ended.err, Contains("a.computer: the program at pty ") && Contains(" does not read"));
     const auto report = run.bench.report("o");
     const auto& node = report["nodes"]["a.computer"];
-    CHECK(node["unread"].get<std::size_t>() > 0);
-    CHECK(node["unread"].get<std::size_t>() + got.size() + 4 == node["received"].get<std::size_t>());
+    const auto received = node["received"].get<std::size_t>(), unread = node["unread"].get<std::size_t>();
+    CHECK(received == 4 * (1 + kLines * kBursts));
+    CHECK(unread > 0);
+    // All but what the program read first and what the terminal held.
+    constexpr std::size_t kTerminalMost = 60'000, kTerminalLeast = 4000;
+    CHECK(unread <= received - 4 - kTerminalLeast);
+    CHECK(unread + 4 + kTerminalMost >= received);
     CHECK_THAT(report["warnings"].dump(), Contains("did not read them"));
 }
 

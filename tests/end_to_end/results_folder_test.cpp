@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
+
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -165,6 +167,17 @@ TEST_CASE("a folder that is not a run's keeps its files, and no link in it is fo
                 fs::create_symlink(bench.folder() / "victim.txt", bench.out("o") / name);
                 check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {name, "is a link"});
                 CHECK(text_of(bench.folder() / "victim.txt") == "mine\n");
+                fs::remove(bench.out("o") / name);
+            }
+        }
+    }
+    SECTION("a named pipe, which nobody reads, with our mark or without") {
+        for (const bool marked : {false, true}) {
+            if (marked) REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+            for (const char* name : {"trajectory.csv", "robot0.pic.log", "report.json"}) {
+                fs::remove(bench.out("o") / name);
+                REQUIRE(::mkfifo((bench.out("o") / name).c_str(), 0600) == 0);
+                check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {name, "is a pipe"});
                 fs::remove(bench.out("o") / name);
             }
         }

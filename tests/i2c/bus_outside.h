@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "cosim/i2c/i2c_bus.h"
+#include "cosim/i2c/i2c_shared.h"
 #include "emu/i2c_devices/bus_node.h"
 
 #include <algorithm>
@@ -80,12 +81,16 @@ class Outside {
   private:
     Time pick(Time most) { return 1 + static_cast<Time>(random_.below(static_cast<std::uint64_t>(most))); }
     void send(PortIndex port, I2cPhaseKind kind, std::uint8_t byte, Time at) {
-        I2cPhase phase{.kind = kind,
-                       .byte = byte,
-                       .ack = kind != I2cPhaseKind::Acknowledge,
-                       .start = at,
-                       .clock_period = kPeriod};
+        send(port, kind, byte, at, kind != I2cPhaseKind::Acknowledge);
+    }
+    void send(PortIndex port, I2cPhaseKind kind, std::uint8_t byte, Time at, std::uint8_t ack) {
+        I2cPhase phase{.kind = kind, .byte = byte, .ack = ack, .start = at, .clock_period = kPeriod};
         coming_.push_back({at, port, phase});
+    }
+    /// Clocks out of step, wild ones of no number that there is.
+    std::uint8_t loose_clocks() {
+        if (!sane_ && random_.below(4) == 0) return static_cast<std::uint8_t>(random_.below(kMostI2cAck + 1));
+        return LooseClocks{static_cast<int>(random_.below(9)), random_.below(2) == 0 ? 8 : 9}.packed();
     }
     void begin(PortIndex master, Time at) {
         constexpr std::uint8_t kAddresses[] = {0x60, 0x61, 0x20, 0x33};
@@ -102,7 +107,7 @@ class Outside {
         }
         const Time at = now + (random_.below(2) == 0 ? 1 : pick(50 * kMicrosecond));
         const bool refused = answer.kind == I2cPhaseKind::BusLost || answer.ack == 0;
-        const std::uint64_t what = random_.below(refused ? 2 : 12);
+        const std::uint64_t what = random_.below(refused ? 2 : 16);
         if (what < 2) {
             if (answer.kind != I2cPhaseKind::BusLost) send(master, I2cPhaseKind::Stop, 0, at);
             begin(master, at + pick(500 * kMicrosecond));
@@ -111,6 +116,11 @@ class Outside {
         } else if (answer.kind == I2cPhaseKind::Data && what == 4) {  // and goes on, against a NACK
             send(master, I2cPhaseKind::Acknowledge, 0, at);
             send(master, I2cPhaseKind::Write, 0xA5, at + 1);
+        } else if (what == 12) {  // a STOP or START follows
+            send(master, I2cPhaseKind::Acknowledge, 0, at, kNoByteFollows);
+        } else if (what == 13) {
+            send(master, I2cPhaseKind::Data, static_cast<std::uint8_t>(random_.below(256)), at,
+                 loose_clocks());
         } else if (answer.kind == I2cPhaseKind::Data || what == 3) {
             send(master, I2cPhaseKind::Read, 0, at);
         } else {
@@ -123,7 +133,8 @@ class Outside {
     }
     void board(PortIndex port, const I2cPhase& phase, Time now) {
         stops_seen += port == kMainBoard && phase.kind == I2cPhaseKind::Stop;
-        if (phase.kind == I2cPhaseKind::Stop || phase.kind == I2cPhaseKind::Acknowledge) return;
+        const bool states = phase.kind == I2cPhaseKind::Acknowledge && phase.ack == 0;
+        if (phase.kind == I2cPhaseKind::Stop || states) return;
         I2cPhase answer = phase;
         answer.kind = phase.kind == I2cPhaseKind::Read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge;
         answer.ack = random_.below(5) != 0;

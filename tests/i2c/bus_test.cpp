@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/fields/json.h"
+#include "cosim/i2c/i2c_shared.h"
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/i2c_devices/signals.h"
 #include "physics/description/channels.h"
@@ -289,4 +290,75 @@ TEST_CASE("the world publishes what the ground sensor listens to") {
               physics::channel_name(physics::kGroundAmbientChannel + i));
     }
     CHECK(i2c_devices::signals().size() == i2c_devices::kSignalCount);
+}
+
+TEST_CASE("a STOP behind an acknowledge meets the first bit of what the device sends next") {
+    Bench bench;
+    bench.give({1, bench.world, Signal{i2c_devices::kGroundReflected, 255}});  // 0x00, 0xFF
+    const auto read_one = [&](Time start) {
+        bench.ask(kPic, I2cPhaseKind::Start, 0xC0, start);
+        bench.ask(kPic, I2cPhaseKind::Write, 0, bench.now);
+        CHECK(bench.ask(kPic, I2cPhaseKind::Start, 0xC1, bench.now).ack == 1);
+    };
+    const auto ask_first_bit = [&] {
+        bench.send(kPic, I2cPhaseKind::Acknowledge, 0, bench.now, kPeriod, kNoByteFollows != 0);
+        const Time asked = bench.now;
+        for (Time time = asked + kMicrosecond;; time += 7 * kMicrosecond)
+            for (const auto& message : bench.until(time))
+                if (message.port == kPic) {
+                    bench.now = message.time;
+                    CHECK(message.time == asked + 9 * kPeriod);
+                    return std::get<I2cPhase>(message.payload);
+                }
+    };
+    read_one(kMillisecond);
+    CHECK(bench.ask(kPic, I2cPhaseKind::Read, 0, bench.now).byte == 0x00);
+    const I2cPhase high = ask_first_bit();  // of 0xFF
+    CHECK(high.kind == I2cPhaseKind::Acknowledge);
+    CHECK(high.ack == 0);
+    bench.send(kPic, I2cPhaseKind::Stop, 0, bench.now);
+    read_one(3 * kMillisecond);                            // the bus is free again
+    CHECK(ask_first_bit().kind == I2cPhaseKind::BusLost);  // of 0x00, right behind the address
+    CHECK(bench.ask(kPic, I2cPhaseKind::Start, 0xC0, 5 * kMillisecond).kind == I2cPhaseKind::BusLost);
+    // A driver's nine clocks and a STOP free it.
+    CHECK(bench.ask(kLinux, I2cPhaseKind::Start, 0xC0, 6 * kMillisecond).ack == 1);
+}
+
+TEST_CASE("clocks out of step reach a device that receives as the bits that they are") {
+    Bench bench;
+    const auto loose = [&](int before, int count, std::uint8_t bits) {
+        I2cPhase phase{.kind = I2cPhaseKind::Data,
+                       .byte = bits,
+                       .ack = LooseClocks{before, count}.packed(),
+                       .start = bench.now,
+                       .clock_period = kPeriod};
+        bench.give({bench.now, kPic, phase});
+        for (Time time = bench.now + kMicrosecond;; time += 7 * kMicrosecond)
+            for (const auto& message : bench.until(time))
+                if (message.port == kPic) {
+                    bench.now = message.time;
+                    return std::get<I2cPhase>(message.payload);
+                }
+    };
+    CHECK(bench.ask(kPic, I2cPhaseKind::Start, 0xC0, kMillisecond).ack == 1);
+    CHECK(bench.ask(kPic, I2cPhaseKind::Read, 0, bench.now).ack == kDeviceAcknowledges);
+    // Its acknowledge, seven ones; one more; its acknowledge, seven ones ...
+    I2cPhase line = loose(8, 8, 0xFF);
+    CHECK(line.byte == 0x7F);
+    CHECK(line.ack == 0);
+    line = loose(7, 1, 0xFF);
+    CHECK(line.ack == LooseClocks::kHeldLow);
+    line = loose(8, 9, 0x00);  // no collision: a 0 in the device's acknowledge; then its byte of seven 0s, 1
+    CHECK(line.byte == 0x00);
+    CHECK(line.ack == LooseClocks::kHeldLow);
+    line = loose(8, 8, 0xFF);
+    CHECK(line.byte == 0x7F);
+    line = loose(7, 8, 0xFF);  // a one, the acknowledge, six ones
+    CHECK(line.byte == 0xBF);
+    line = loose(6, 9, 0xC0);  // two ones, and the device acknowledges against the master's 0
+    CHECK(line.byte == 0xC0);
+    CHECK(line.ack == 0);
+    loose(6, 8, 0xFF);
+    line = loose(5, 9, 0xFF);  // three ones, and the acknowledge against a 1
+    CHECK(line.kind == I2cPhaseKind::BusLost);
 }

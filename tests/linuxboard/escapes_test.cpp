@@ -47,11 +47,26 @@ TEST_CASE("what nobody can conduct is refused by name with status 126") {
                                                                        {"SYS_clone-thread", "SYS_clone"},
                                                                        {"io_uring", "io_uring_setup"},
                                                                        {"ptrace", "ptrace()"},
+                                                                       {"unshare", "unshare()"},
+                                                                       {"SYS_unshare", "SYS_unshare"},
+                                                                       {"setns", "setns()"},
+                                                                       {"SYS_setns", "SYS_setns"},
+                                                                       {"seccomp", "PR_SET_SECCOMP"},
+                                                                       {"SYS_seccomp", "SYS_seccomp"},
+                                                                       {"SYS_prctl", "PR_SET_SECCOMP"},
+                                                                       {"dispatch", "USER_DISPATCH"},
                                                                        {"SYS_ptrace", "SYS_ptrace"}}));
     CAPTURE(how);
     const Ran ran = run({how});
     CHECK(!ran.success);
     CHECK_THAT(ran.reason, Contains("exited with status 126") && Contains(name));
+}
+
+TEST_CASE(
+    "namespaces apart, unshare() and prctl() are the kernel's, and the run's end takes a program along") {
+    const Ran ran = run({"harmless"});
+    CHECK(ran.log == "unshare 0, name robot, death signal 15, none 0, wrong -1\n");
+    CHECK(ran.success);
 }
 
 TEST_CASE("a device opened by syscall() is the board's") {

@@ -46,6 +46,13 @@ TEST_CASE("epoll watches devices and other descriptors together") {
     CHECK_THAT(text, Contains("epoll 1 timer at 30\nepoll 1 serial at 40\nepoll 1 timer at 60\n"));
 }
 
+TEST_CASE("an edge-triggered serial port is reported once for each byte that comes or goes") {
+    const std::string text = run_kit("epoll-edges", [](Bench& bench) { bench.send(80 * kMillisecond, "x"); });
+    CHECK_THAT(text,
+               Contains("edge 1 4 at 0\nedge 0 0 at 50\nedge 1 5 at 80\nedge 1 5 at 80\nedge 0 0 at 130\n"
+                        "i2c -1 Operation not permitted\n"));
+}
+
 TEST_CASE("a pipe between threads wakes the reader when it is written") {
     CHECK_THAT(run_kit("pipes"), Contains("pipe p at 12\npoll 1 1 at 2"));
 }

@@ -246,11 +246,12 @@ TEST_CASE("in real-time mode the wall clock paces the program") {
     spec.real_time = true;
     Bench bench(std::move(spec));
     const auto start = std::chrono::steady_clock::now();
-    bench.run(kSecond);
+    // Until the program ends: the more a machine has to do, the later that is by both clocks.
+    bench.run(3600 * kSecond);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    CHECK(took.count() >= 0.2);
-    CHECK(took.count() < 0.4);
-    CHECK(std::stol(bench.log()) >= 200'000);
     REQUIRE(bench.node().stop());
     CHECK(bench.node().stop()->success);
+    const double own_clock = static_cast<double>(std::stol(bench.log())) * 1e-6;
+    CHECK(own_clock >= 0.2);
+    CHECK(took.count() >= own_clock);  // which never runs ahead
 }

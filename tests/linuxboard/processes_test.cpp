@@ -118,6 +118,35 @@ TEST_CASE("a program reached from Python keeps clock, time and port") {
     check_wrapped("exec " + python + " -c '" + words + "'");
 }
 
+// Python takes locks for each entry of a folder in which it looks for modules, and would write byte code that
+// its next start reads.
+TEST_CASE("a Python program's first run is as the next ones, whatever else is in its folder") {
+    const std::string python = "/usr/bin/python3";
+    if (!std::filesystem::exists(python)) {
+        WARN("python3 is not there: skipped");
+        return;
+    }
+    const auto folder = scratch_path("python_modules");
+    std::filesystem::create_directory(folder);
+    const auto write = [&](const std::string& name, const std::string& text) {
+        std::ofstream(folder / name) << text;
+    };
+    write("helper.py", "def word(i):\n    return bytes([i])\n");
+    write("robot.py", "import helper, os, time\nf = os.open('/dev/ttyS0', os.O_RDWR)\n"
+                      "for i in range(3):\n    os.write(f, helper.word(i))\n    time.sleep(0.01)\n");
+    ::unsetenv("PYTHONDONTWRITEBYTECODE");  // of whoever runs the tests
+    linuxboard::LinuxSpec spec = spec_for("beat");
+    spec.program = python;
+    spec.args = {(folder / "robot.py").string()};
+    const Ran first = run(spec);
+    CHECK(first.sent == std::string("\0\1\2", 3));
+    CHECK_FALSE(std::filesystem::exists(folder / "__pycache__"));
+    CHECK(run(spec).trace == first.trace);
+    for (int i = 0; i < 20; ++i)
+        write(fmt::format("more{}.txt", i), "");
+    CHECK(run(spec).trace == first.trace);
+}
+
 TEST_CASE("calls of a process number mean the program's processes, and reach none of the host") {
     const linuxboard::LinuxSpec own = spec_for("numbers", {"own"});
     const Ran ran = run(own);

@@ -155,10 +155,9 @@ TEST_CASE("a process that dies while the node waits for it is noticed at once") 
     Process process(sockets[0], entry, *memory);
     wire::Request request;
     std::string data;
-    const auto start = std::chrono::steady_clock::now();
-    CHECK(process.hear(20.0, request, data) == ProcessEvent::Ended);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    CHECK(took.count() < 2.0);  // 55 ms on a machine that is not busy
+    // Not noticed it would be waited for without end; 55 ms on a machine that is not busy.
+    constexpr double kForGood = 1e6;  // s
+    CHECK(process.hear(kForGood, request, data) == ProcessEvent::Ended);
     CHECK(process.killed_by() == SIGKILL);
     CHECK(process.describe_end() == "was killed by SIGKILL (Killed)");
 }

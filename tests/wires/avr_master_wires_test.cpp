@@ -1,6 +1,7 @@
 // The two-wire interface as master with drawn programs against drawn slaves and masters, against the wires
 // (wire_twi_master.h): each status code with each operation that the data sheet lists for it, STOP and START
-// together, arbitration lost at any bit and in the ninth clock, TWDR written too early, bit rates.
+// where a slave is to send, which its first bit may prevent, STOP and START together, arbitration lost at any
+// bit and in the ninth clock, TWDR written too early, bit rates.
 
 #include "base/random.h"
 #include "cosim/i2c/i2c_shared.h"
@@ -28,7 +29,7 @@ constexpr int kMasterLog = 0x300;
 
 /// One operation of the program and what happens to it on the wires.
 struct Operation {
-    bool start = false, stop = false, acknowledges = false, early = false;
+    bool start = false, stop = false, acknowledges = false, early = false, meets_byte = false;
     std::uint8_t data = 0;
     Wire wire = Wire::None;
     std::uint8_t drives = 0xFF, others = 0xFF;
@@ -66,6 +67,7 @@ void draw_request(Operation& operation, RandomStream& random, const WireTwiMaste
     case 0x40:
     case 0x50:
         operation.acknowledges = die < 8;
+        if (die > 12) ends();  // not listed
         break;
     default:  // 0x48, 0x58
         ends();
@@ -73,7 +75,8 @@ void draw_request(Operation& operation, RandomStream& random, const WireTwiMaste
     }
 }
 
-std::vector<Operation> drawn_program(RandomStream& random, int count, WireTwiMaster& wires) {
+/// `shared`: another master sends the same, and no slave's bit is in the way of both.
+std::vector<Operation> drawn_program(RandomStream& random, int count, WireTwiMaster& wires, bool shared) {
     std::vector<Operation> program;
     while (static_cast<int>(program.size()) < count) {
         Operation one;
@@ -82,9 +85,12 @@ std::vector<Operation> drawn_program(RandomStream& random, int count, WireTwiMas
         wires.write_data(one.data);
         one.wire = wires.control(one.start, one.stop, one.acknowledges);
         one.drives = wires.data();
-        if (one.wire == Wire::Read)
+        const bool condition =
+            one.wire == Wire::Start || one.wire == Wire::Stop || one.wire == Wire::StopAndStart;
+        one.meets_byte = condition && wires.meets_byte() && !shared;
+        if (one.wire == Wire::Read || one.meets_byte)
             one.others = static_cast<std::uint8_t>(random.below(256));
-        else if (random.below(8) == 0)  // another master's bits
+        else if (!condition && random.below(8) == 0)  // another master's bits
             one.others = static_cast<std::uint8_t>(random.below(256) | random.below(256));
         one.low = random.below(3) != 0;
         if (one.wire == Wire::Read && !one.acknowledges) one.low = random.below(4) == 0;
@@ -120,7 +126,7 @@ std::string assembly_of(const std::vector<Operation>& program, int bit_rate, int
                             "        sts TWCR, r16\n",
                             one.data, control);
         if (one.early) text += fmt::format("        ldi r18, {}\n        sts TWDR, r18\n", 255 - one.data);
-        if (one.wire == Wire::Stop)
+        if (one.wire == Wire::Stop && one.status != 0x38)
             text += fmt::format("w{0}:    lds r17, TWCR\n        sbrc r17, 4\n        rjmp w{0}\n", i);
         else if (one.wire != Wire::None)
             text += fmt::format("w{0}:    lds r17, TWCR\n        sbrs r17, 7\n        rjmp w{0}\n", i);
@@ -167,7 +173,8 @@ class MasterOnWires {
         }
         REQUIRE(rig_.ram(std::uint16_t{0x200}) == static_cast<std::uint8_t>(i + 1));
         const bool own = one.wire != Wire::None && one.wire != Wire::Start;
-        CHECK(served == (own ? 1u : 0u));
+        const bool stops = one.status != 0x38 && (one.wire == Wire::Stop || one.wire == Wire::StopAndStart);
+        CHECK(served == (one.meets_byte ? 1u + (stops ? 1u : 0u) : own ? 1u : 0u));
     }
 
     void serve(const Operation& one, I2cPhase phase) {
@@ -175,6 +182,14 @@ class MasterOnWires {
         I2cPhase answer = phase;
         Time clocks = 9;
         const bool lost_bit = (one.drives & ~one.others) != 0;
+        if (phase.kind == I2cPhaseKind::Acknowledge) {
+            CHECK(one.meets_byte);
+            answer.kind = one.status == 0x38 ? I2cPhaseKind::BusLost : I2cPhaseKind::Acknowledge;
+            answer.ack = 0;
+            rig_.chip.run_until(phase.start + clocks * phase.clock_period);
+            if (answer.kind == I2cPhaseKind::BusLost) told_ = false;
+            return rig_.chip.twi_answer(answer);
+        }
         switch (one.wire) {
         case Wire::Address:
         case Wire::Write:
@@ -225,7 +240,7 @@ constexpr int kTwiMasterSeeds = 40, kOperations = 200;
 
 TEST_CASE("AVR: a two-wire master under drawn programs, slaves and other masters, against the wires") {
     std::map<int, int> statuses;
-    int operations = 0, collisions = 0, stop_and_start = 0;
+    int operations = 0, collisions = 0, stop_and_start = 0, met = 0, prevented = 0;
     const auto drawn_seeds = static_cast<std::uint64_t>(seeds(kTwiMasterSeeds));
     for (std::uint64_t seed = 1; seed <= drawn_seeds; ++seed) {
         INFO("seed " << seed);
@@ -233,18 +248,23 @@ TEST_CASE("AVR: a two-wire master under drawn programs, slaves and other masters
         const int prescaler = static_cast<int>(random.below(3));
         const int bit_rate = static_cast<int>(random.below(prescaler == 0 ? 40 : 8));
         WireTwiMaster wires;
-        const std::vector<Operation> program = drawn_program(random, kOperations, wires);
-        MasterOnWires(program, bit_rate, prescaler, random.below(2) == 0).run();
+        const bool shared = random.below(2) == 0;
+        const std::vector<Operation> program = drawn_program(random, kOperations, wires, shared);
+        MasterOnWires(program, bit_rate, prescaler, shared).run();
         operations += static_cast<int>(program.size());
         for (const Operation& one : program) {
             ++statuses[one.status];
             collisions += one.collision;
+            met += one.meets_byte;
+            prevented += one.meets_byte && one.status == 0x38;
             stop_and_start += one.wire == Wire::StopAndStart;
         }
     }
     CHECK(operations == seeds(kTwiMasterSeeds) * kOperations);
     CHECK(collisions > 10 * seeds(kTwiMasterSeeds));
     CHECK(stop_and_start > seeds(kTwiMasterSeeds));
+    CHECK(met > 2 * seeds(kTwiMasterSeeds));
+    CHECK(prevented > seeds(kTwiMasterSeeds) / 2);
     for (const int status : {0x08, 0x10, 0x18, 0x20, 0x28, 0x30, 0x38, 0x40, 0x48, 0x50, 0x58, 0xF8}) {
         INFO("status " << status);
         CHECK(statuses[status] > 10);

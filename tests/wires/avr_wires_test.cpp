@@ -98,6 +98,17 @@ class Slave {
   public:
     explicit Slave(const WireTwi::Setup& setup) : rig_(program(setup)) { rig_.chip.run_until(kPeriod); }
 
+    /// Whether SDA is low in the next clock.
+    bool first_bit_low() {
+        rig_.answers.clear();
+        const Time start = rig_.chip.now();
+        rig_.chip.twi_slave_phase(first_bit_from(start, kPeriod));
+        rig_.chip.run_until(start + 11 * kPeriod);
+        REQUIRE(rig_.answers.size() == 1);
+        CHECK(rig_.answers[0].kind == I2cPhaseKind::Acknowledge);
+        return rig_.answers[0].ack != 0;
+    }
+
     /// Returns the answer; none for a Stop and for a byte that is broken off.
     std::optional<I2cPhase> act(const Action& action) {
         const I2cPhase phase = phase_of(action, rig_.chip.now(), kPeriod);
@@ -139,7 +150,7 @@ constexpr int kSeeds = 240, kActions = 400;
 }  // namespace
 
 TEST_CASE("AVR: a two-wire slave under masters that keep to nothing, against the wires") {
-    int both_sent = 0, broken = 0, behind_nack = 0;
+    int both_sent = 0, broken = 0, behind_nack = 0, first_bits = 0, first_low = 0;
     std::map<int, int> statuses;
     const auto drawn_seeds = static_cast<std::uint64_t>(seeds(kSeeds));
     for (std::uint64_t seed = 1; seed <= drawn_seeds; ++seed) {
@@ -152,16 +163,29 @@ TEST_CASE("AVR: a two-wire slave under masters that keep to nothing, against the
         Slave chip(setup);
         WireTwi wires(setup);
         Draw draw(3000 + seed, {0x2A, 0x2A, 0x2A, 0x2C, 0x00});
-        bool begun = false, acknowledged = false, ended = false;
+        bool begun = false, sends = false, ended = false;
         for (int i = 0; i < kActions; ++i) {
-            const Action action = draw.action(begun, acknowledged);
+            Action action = draw.action(begun);
             INFO("action " << i << " kind " << static_cast<int>(action.kind) << " byte " << int(action.byte)
                            << " clocks " << action.clocks);
+            const bool condition = action.kind == Action::Kind::Start || action.kind == Action::Kind::Stop;
+            if (condition && sends) {
+                const bool low = !wires.lets_go();
+                CHECK(chip.first_bit_low() == low);
+                ++first_bits;
+                first_low += low;
+                if (low) {  // neither is possible: the master clocks on
+                    action.kind = Action::Kind::Read;
+                    action.ack = draw.one_in(2);
+                    action.clocks = 9;
+                }
+            }
+            sends = false;
             if (action.kind == Action::Kind::Start) wires.start();
             if (action.kind == Action::Kind::Stop) {
                 wires.stop();
                 chip.act(action);
-                begun = acknowledged = ended = false;
+                begun = ended = false;
                 chip.compare(wires.served());
                 continue;
             }
@@ -174,7 +198,7 @@ TEST_CASE("AVR: a two-wire slave under masters that keep to nothing, against the
             if (action.clocks < 9 && wires.lets_go()) {
                 chip.act(action);
                 ++broken;
-                acknowledged = ended = false;
+                ended = false;
                 Action breaks;
                 if (action.broken_by_stop) {
                     wires.stop();
@@ -209,7 +233,7 @@ TEST_CASE("AVR: a two-wire slave under masters that keep to nothing, against the
                     if (action.kind == Action::Kind::Start) ended = false;
                 }
             }
-            acknowledged = action.kind == Action::Kind::Read && action.ack;
+            sends = wires.sends();
             chip.compare(wires.served());
         }
         for (const auto& service : wires.served())
@@ -218,6 +242,8 @@ TEST_CASE("AVR: a two-wire slave under masters that keep to nothing, against the
     CHECK(both_sent > 20);
     CHECK(broken > 100);
     CHECK(behind_nack > 50);
+    CHECK(first_bits > 500);
+    CHECK(first_low > 200);
     for (const int status : {0x00, 0x60, 0x70, 0x80, 0x88, 0x90, 0x98, 0xA0, 0xA8, 0xB8, 0xC0, 0xC8}) {
         INFO("status " << status);
         CHECK(statuses[status] > 5);

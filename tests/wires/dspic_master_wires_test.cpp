@@ -2,7 +2,8 @@
 // against the wires (wire_master.h): requests while another is under way, bytes that nobody fetched, bytes
 // refused, arbitration lost at any bit, what follows a byte that was not acknowledged, a START while another
 // master has the bus, bytes received right behind a START, SCL held low by others, the ninth clock and the
-// STOP of a bus that another master shares.
+// STOP of a bus that another master shares, ninth clocks left out or given too often in any number, STOP and
+// START against the first bit of a slave that is to send.
 
 #include "base/random.h"
 #include "cosim/i2c/i2c_shared.h"
@@ -59,7 +60,7 @@ struct MasterBench : dspic::test::Bench {
         go(clock.first_cycle_at(last.start + count * last.clock_period / 2));
     }
     /// Its ninth clock ends, or the one in which a bit was lost.
-    void answer(I2cPhaseKind kind, std::uint8_t byte, bool ack, int clocks = 9, Cycle stretch = 0) {
+    void answer(I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, int clocks = 9, Cycle stretch = 0) {
         go_half_clocks(2 * clocks);
         if (stretch > 0) {
             const std::uint16_t status = read(sfr::I2CSTAT), control = read(sfr::I2CCON);
@@ -67,7 +68,7 @@ struct MasterBench : dspic::test::Bench {
             CHECK(read(sfr::I2CSTAT) == status);
             CHECK(read(sfr::I2CCON) == control);
         }
-        i2c.answer({.kind = kind, .byte = byte, .ack = static_cast<std::uint8_t>(ack ? 1 : 0)}, now);
+        i2c.answer({.kind = kind, .byte = byte, .ack = ack}, now);
     }
 };
 
@@ -79,7 +80,8 @@ std::uint16_t bit_of(Activity activity) {
 
 struct MasterSeen {
     int steps = 0, transmitted = 0, received = 0, lost = 0, ignored = 0, overruns = 0, refused = 0,
-        unacknowledged = 0, taken = 0, behind_start = 0, stretched = 0, lost_ninth = 0, lost_stop = 0;
+        unacknowledged = 0, taken = 0, behind_start = 0, stretched = 0, lost_ninth = 0, lost_stop = 0,
+        loose = 0, far_loose = 0, first_bits = 0, first_low = 0, behind_ninth = 0, held = 0;
 };
 
 /// What a program does next that owns the bus or not: what the module is made for, in any order.
@@ -101,9 +103,7 @@ class Comparison {
         ++seen_.steps;
         if (!wires_.mine() && random_.below(4) == 0) return other_master();
         const Activity activity = drawn_activity(random_, wires_);
-        auto byte = static_cast<std::uint8_t>(random_.below(256));
-        // A 0 would be the ninth clock that was left out (tests/exec/i2c_ninth_clock_test.cpp).
-        if (activity == Activity::Transmit && ninth_open_) byte |= 0x80;
+        const auto byte = static_cast<std::uint8_t>(random_.below(256));
         const std::size_t phases_before = chip_.pins.phases.size();
         begin(activity, byte);
         same();
@@ -116,20 +116,32 @@ class Comparison {
         const bool owned = chip_.pins.phases.size() > phases_before && activity != Activity::Stop;
         check_phases(activity, byte, phases_before);
         const bool any = activity == Activity::Receive || activity == Activity::Stop;
-        const auto others =
+        auto others =
             static_cast<std::uint8_t>(any                     ? random_.below(256)
                                       : random_.below(6) == 0 ? random_.below(256) | random_.below(256)
                                                               : 0xFF);
-        // What comes after a byte meets others only while another master shares the bus.
-        const bool alone = activity == Activity::Acknowledge || activity == Activity::Stop;
-        const bool low = alone && !shared_ ? false : random_.below(4) != 0;
-        finish(activity, byte, alone && !shared_ ? std::uint8_t{0xFF} : others, low, owned);
-        ninth_open_ = activity == Activity::Receive;
+        bool low = random_.below(4) != 0;
+        // What comes after a byte meets others only while another master shares the bus, and slaves that
+        // acknowledge or send.
+        const bool condition = is_condition(activity);
+        if (condition && (!shared_ || activity != Activity::Stop))
+            others = static_cast<std::uint8_t>(meets_first_bit(activity) ? random_.below(256)
+                                               : held_ && !shared_       ? 0x7F
+                                                                         : 0xFF);
+        if (activity == Activity::Acknowledge && !shared_ && !loose_) low = held_;
+        finish(activity, byte, others, low, owned);
         same();
         handle();
     }
 
   private:
+    static bool is_condition(Activity activity) {
+        return activity == Activity::Start || activity == Activity::Restart || activity == Activity::Stop;
+    }
+    bool meets_first_bit(Activity activity) const {
+        return is_condition(activity) && heard_ && reads_ && place_ == 0 && !shared_ && had_bus_;
+    }
+
     void other_master() {
         if (wires_.taken()) {
             chip_.other(I2cPhaseKind::Stop);
@@ -172,27 +184,61 @@ class Comparison {
         same();
     }
 
+    /// What the slaves' byte has had of its nine clocks decides what the bus is to know.
+    bool check_loose(Activity activity, std::uint8_t byte, std::size_t before) {
+        const bool clocks = activity == Activity::Transmit || activity == Activity::Receive ||
+                            activity == Activity::Acknowledge;
+        const int due = activity == Activity::Acknowledge ? 8 : 0;
+        loose_ = clocks && heard_ && !reads_ && !shared_ && !after_start_ && place_ != due;
+        if (!loose_) return false;
+        ++seen_.loose;
+        seen_.far_loose += place_ > 0 && place_ < 8;
+        unacknowledged_ = received_ = false;
+        REQUIRE(chip_.pins.phases.size() == before + 1);
+        const I2cPhase& phase = chip_.pins.phases.back();
+        CHECK(phase.kind == I2cPhaseKind::Data);
+        const auto sent = cosim::LooseClocks::of(phase.ack);
+        CHECK(sent.before == place_);
+        CHECK(sent.count == (activity == Activity::Transmit ? 9 : activity == Activity::Receive ? 8 : 1));
+        const bool refuses = (chip_.read(sfr::I2CCON) & kAckdt) != 0;
+        CHECK((phase.byte & 0x80) == ((activity == Activity::Transmit             ? byte
+                                       : activity == Activity::Receive || refuses ? 0xFF
+                                                                                  : 0) &
+                                      0x80));
+        if (activity == Activity::Transmit) CHECK(phase.byte == byte);
+        return true;
+    }
+
     void check_phases(Activity activity, std::uint8_t byte, std::size_t before) {
+        if (check_loose(activity, byte, before)) return;
         std::vector<I2cPhaseKind> kinds, expected;
         for (std::size_t i = before; i < chip_.pins.phases.size(); ++i)
             kinds.push_back(chip_.pins.phases[i].kind);
         const bool byte_follows =
             (activity == Activity::Transmit || activity == Activity::Receive) && !after_start_;
-        if (byte_follows && unacknowledged_ && !shared_) {
+        const bool behind_ninth = activity == Activity::Transmit && heard_ && reads_ && place_ == 8 &&
+                                  !shared_ && !after_start_ && byte < 0x80;
+        seen_.behind_ninth += behind_ninth;
+        if (byte_follows && unacknowledged_ && !shared_ && !behind_ninth) {
             expected.push_back(I2cPhaseKind::Acknowledge);
             ++seen_.unacknowledged;
         }
-        if (byte_follows) unacknowledged_ = received_ = false;
+        if (byte_follows) unacknowledged_ = received_ = behind_ninth;
         if (activity == Activity::Transmit)
             expected.push_back(after_start_ ? I2cPhaseKind::Start : I2cPhaseKind::Write);
         // Eight ones that follow a START are an address byte for all who listen.
         if (activity == Activity::Receive)
             expected.push_back(after_start_ ? I2cPhaseKind::Start : I2cPhaseKind::Read);
         if (activity == Activity::Acknowledge && shared_) expected.push_back(I2cPhaseKind::Acknowledge);
-        if (activity == Activity::Stop && wires_.mine()) expected.push_back(I2cPhaseKind::Stop);
+        had_bus_ = wires_.mine();
+        if (meets_first_bit(activity))
+            expected.push_back(I2cPhaseKind::Acknowledge);
+        else if (activity == Activity::Stop && had_bus_ && !held_)
+            expected.push_back(I2cPhaseKind::Stop);
         const bool same_phases = kinds == expected;
         CHECK(same_phases);
-        if (activity == Activity::Transmit) CHECK(chip_.pins.phases.back().byte == byte);
+        if (activity == Activity::Transmit)
+            CHECK(chip_.pins.phases.back().byte == (behind_ninth ? (byte << 1 & 0xFF) + 1 : byte));
         if (activity == Activity::Acknowledge && shared_)
             CHECK(chip_.pins.phases.back().ack == (chip_.read(sfr::I2CCON) & kAckdt ? 0 : 1));
         if (activity == Activity::Receive && !after_start_)
@@ -205,53 +251,113 @@ class Comparison {
 
     void finish(Activity activity, std::uint8_t byte, std::uint8_t others, bool low, bool owned) {
         if (activity == Activity::Transmit) {
-            const auto wrong = static_cast<std::uint8_t>(byte & ~others);
-            const bool lost = wrong != 0;
-            const int clocks = lost ? std::countl_zero(wrong) + 1 : 9;
-            if (clocks > 7) {
-                chip_.go_half_clocks(15);
-                CHECK((chip_.read(sfr::I2CSTAT) & 0x4001) == 0x4001);
-            }
-            if (clocks > 8) {  // TBF ends with the eighth clock
-                chip_.go_half_clocks(17);
-                CHECK((chip_.read(sfr::I2CSTAT) & 0x4001) == 0x4000);
-            }
-            // Another master may have sent the same address.
-            if (!lost && after_start_ && random_.below(3) == 0) {
-                chip_.answer(cosim::kSharedNotice, byte, false);
-                shared_ = true;
-            }
-            chip_.answer(lost ? I2cPhaseKind::BusLost : I2cPhaseKind::Acknowledge, byte, low, clocks,
-                         lost ? 0 : stretch());
-            if (lost) shared_ = false;
-            after_start_ = false;
-            ++seen_.transmitted;
-            seen_.lost += lost;
-            seen_.refused += !lost && !low;
+            finish_transmit(byte, others, low);
         } else if (activity == Activity::Receive) {
-            chip_.answer(I2cPhaseKind::Data, others, true, 9, stretch());
+            held_ = (loose_ || !reads_) && !shared_ && heard_ && after_byte(8) == 8 && random_.below(2) == 0;
+            const std::uint8_t ack = loose_  ? held_ ? cosim::LooseClocks::kHeldLow : std::uint8_t{0}
+                                      : held_ ? cosim::kDeviceAcknowledges
+                                             : std::uint8_t{1};
+            chip_.answer(I2cPhaseKind::Data, others, ack, 9, stretch());
+            if (!loose_) unacknowledged_ = received_ = true;
+            heard_ = heard_ && !(reads_ && place_ == 8 && !shared_) && !after_start_;
             after_start_ = false;
-            unacknowledged_ = received_ = true;
+            place_ = loose_ ? after_byte(8) : 8;
             ++seen_.received;
+        } else if (activity == Activity::Acknowledge && loose_) {
+            finish_loose_acknowledge(low);
+        } else if (meets_first_bit(activity)) {
+            const bool pulled = (others & 0x80) == 0;
+            chip_.answer(pulled ? I2cPhaseKind::BusLost : I2cPhaseKind::Acknowledge, 0, 0, 9, stretch());
+            ++seen_.first_bits;
+            seen_.first_low += pulled;
+            run_on();
         } else if (shared_ && (activity == Activity::Acknowledge || activity == Activity::Stop)) {
             const bool high = activity == Activity::Stop || (chip_.read(sfr::I2CCON) & kAckdt) != 0;
             const bool pulled = activity == Activity::Stop ? (others & 0x80) == 0 : low;
-            chip_.answer(high && pulled ? I2cPhaseKind::BusLost : I2cPhaseKind::Acknowledge, 0, low, 1,
-                         stretch());
+            chip_.answer(high && pulled ? I2cPhaseKind::BusLost : I2cPhaseKind::Acknowledge, 0, low ? 1 : 0,
+                         1, stretch());
             if (activity == Activity::Stop || (high && pulled)) shared_ = false;
             seen_.lost_stop += activity == Activity::Stop && pulled;
             seen_.lost_ninth += activity == Activity::Acknowledge && high && pulled;
         } else {
-            const Cycle end = chip_.now + kSettled;
-            while (chip_.events.next() < end)
-                chip_.go(chip_.events.next());
+            seen_.held += held_;
+            run_on();
         }
         CHECK((owned || activity != Activity::Transmit));
-        wires_.finish(others, low, (chip_.read(sfr::I2CCON) & kAckdt) != 0);
-        if (activity == Activity::Start || activity == Activity::Restart) {
-            after_start_ = true;
-            unacknowledged_ = received_ = false;
+        const bool refuses = (chip_.read(sfr::I2CCON) & kAckdt) != 0;
+        wires_.finish(others, low, refuses);
+        if (activity == Activity::Acknowledge && !loose_) {
+            if (reads_ && refuses && place_ == 8 && !shared_) heard_ = false;
+            place_ = 0;
+            held_ = false;
         }
+        if (is_condition(activity)) {
+            after_start_ = activity != Activity::Stop && wires_.mine();
+            unacknowledged_ = received_ = heard_ = held_ = false;
+        }
+        if (!wires_.mine()) heard_ = held_ = false;
+        loose_ = false;
+    }
+
+    void finish_transmit(std::uint8_t byte, std::uint8_t others, bool low) {
+        const auto wrong = static_cast<std::uint8_t>(byte & ~others);
+        const bool lost = wrong != 0;
+        const int clocks = lost ? std::countl_zero(wrong) + 1 : 9;
+        if (clocks > 7) {
+            chip_.go_half_clocks(15);
+            CHECK((chip_.read(sfr::I2CSTAT) & 0x4001) == 0x4001);
+        }
+        if (clocks > 8) {  // TBF ends with the eighth clock
+            chip_.go_half_clocks(17);
+            CHECK((chip_.read(sfr::I2CSTAT) & 0x4001) == 0x4000);
+        }
+        // Another master may have sent the same address.
+        if (!lost && after_start_ && random_.below(3) == 0) {
+            chip_.answer(cosim::kSharedNotice, byte, 0);
+            shared_ = true;
+        }
+        held_ = loose_ && place_ == 8 && random_.below(2) == 0;
+        const std::uint8_t flags =
+            (low ? cosim::LooseClocks::kLineLow : 0) | (held_ ? cosim::LooseClocks::kHeldLow : 0);
+        const std::uint8_t ack = loose_ ? flags : low ? 1 : 0;
+        chip_.answer(lost     ? I2cPhaseKind::BusLost
+                     : loose_ ? I2cPhaseKind::Data
+                              : I2cPhaseKind::Acknowledge,
+                     byte, ack, clocks, lost ? 0 : stretch());
+        if (lost) shared_ = false;
+        if (after_start_) {
+            heard_ = low && !lost;
+            reads_ = (byte & 1) != 0;
+            place_ = 0;
+        } else if (!loose_ && reads_ && !(place_ == 8 && byte < 0x80)) {
+            heard_ = false;  // the slave's byte is not acknowledged
+        }
+        after_start_ = false;
+        ++seen_.transmitted;
+        seen_.lost += lost;
+        seen_.refused += !lost && !low;
+    }
+
+    void finish_loose_acknowledge(bool& low) {
+        const bool refuses = (chip_.read(sfr::I2CCON) & kAckdt) != 0;
+        const bool ninth = place_ == 8;
+        low = ninth && held_;
+        place_ = after_byte(1);
+        held_ = place_ == 8 && random_.below(2) == 0;
+        if (place_ < 8 && !ninth) {
+            run_on();
+        } else {
+            const bool lost = refuses && low;
+            chip_.answer(lost ? I2cPhaseKind::BusLost : I2cPhaseKind::Data, 0,
+                         held_ ? cosim::LooseClocks::kHeldLow : 0, 9, stretch());
+        }
+    }
+
+    int after_byte(int clocks) const { return (place_ + clocks) % 9; }
+    void run_on() {
+        const Cycle end = chip_.now + kSettled;
+        while (chip_.events.next() < end)
+            chip_.go(chip_.events.next());
     }
 
     /// A slave, or another master, holds SCL low for so many cycles: until then nothing has ended.
@@ -285,7 +391,10 @@ class Comparison {
     WireMaster wires_;
     int interrupts_ = 0;
     bool after_start_ = false, received_ = false, unacknowledged_ = false, shared_ = false;
-    bool ninth_open_ = false;  ///< of the byte received newest
+    bool heard_ = false, reads_ = false;  ///< a slave is there, and sends
+    bool held_ = false;                   ///< it acknowledges in the clock that comes
+    bool loose_ = false, had_bus_ = false;
+    int place_ = 0;  ///< clocks that the slave's byte has had
 };
 
 constexpr int kDspicMasterSeeds = 60, kDspicMasterSteps = 400;
@@ -316,4 +425,10 @@ TEST_CASE("dsPIC: a master under drawn programs, slaves and other masters, again
     CHECK(seen.overruns > 100);
     CHECK(seen.refused > 100);
     CHECK(seen.unacknowledged > 100);
+    CHECK(seen.loose > 100);
+    CHECK(seen.far_loose > 50);
+    CHECK(seen.first_bits > 50);
+    CHECK(seen.first_low > 20);
+    CHECK(seen.behind_ninth > 10);
+    CHECK(seen.held > 20);
 }

@@ -4,8 +4,8 @@
 // received, the interrupts. A program serves each interrupt as it draws: reads I2CRCV or not, loads I2CTRN or
 // not, clears I2COV or not, has the next byte put into I2CTRN as soon as the one before is out or not.
 //
-// A byte that the master acknowledges is followed by another: the chip is informed of the acknowledge by that
-// (deviation 2 of i2c_slave.h), and is compared then.
+// Of a byte that the master acknowledges the chip is informed by what follows (deviation 2 of i2c_slave.h):
+// another byte, or the question for its next bit, which a STOP or START meets. It is compared then.
 
 #include "tests/dspic/chip30_bench.h"
 #include "tests/dspic/chip33_bench.h"
@@ -122,6 +122,19 @@ class Rig {
     int reg(const std::string& name) { return bench_.chip.peek(prefix_ + name); }
     int interrupts() { return bench_.word(kCount); }
 
+    /// Whether SDA is low in the next clock.
+    bool first_bit_low() {
+        bench_.pins.answers.clear();
+        bench_.chip.i2c_slave_phase(1, first_bit_from(bench_.chip.now(), kPeriod));
+        for (int i = 0; i < 40 && bench_.pins.answers.empty(); ++i)
+            bench_.chip.run_until(bench_.chip.now() + kPeriod / 2);
+        REQUIRE(bench_.pins.answers.size() == 1);
+        const I2cPhase answer = bench_.pins.answers[0];
+        CHECK(answer.kind == I2cPhaseKind::Acknowledge);
+        bench_.chip.run_until(bench_.chip.now() + kPeriod);
+        return answer.ack != 0;
+    }
+
     /// Returns the answer; none for a Stop and for a byte that is broken off.
     std::optional<I2cPhase> act(const Action& action) {
         const I2cPhase phase = phase_of(action, bench_.chip.now(), kPeriod);
@@ -154,12 +167,12 @@ constexpr int kCompared = 0x3FF;
 /// Counts of what was drawn, so that a test cannot pass by drawing nothing.
 struct Seen {
     int actions = 0, both_sent = 0, ones_received = 0, broken = 0, behind_nack = 0, overruns = 0, sent = 0,
-        acknowledged = 0, loaded_early = 0;
+        acknowledged = 0, loaded_early = 0, first_bits = 0, first_low = 0;
 };
 
 template <class Bench>
 void compare(Rig<Bench>& rig, WireDspic& wires, Draw& draw, int actions, Seen& seen) {
-    bool begun = false, acknowledged = false, ended = false;
+    bool begun = false, acknowledged = false, ended = false, sends = false;
     const auto same = [&] {
         CHECK((rig.reg("STAT") & kCompared) == wires.status());
         CHECK(rig.interrupts() == wires.interrupts());
@@ -167,10 +180,25 @@ void compare(Rig<Bench>& rig, WireDspic& wires, Draw& draw, int actions, Seen& s
         CHECK((rig.reg("CON") & 0x1000) != 0);
     };
     for (int i = 0; i < actions; ++i) {
-        Action action = draw.action(begun, acknowledged);
+        Action action = draw.action(begun);
         INFO("action " << i << " kind " << static_cast<int>(action.kind) << " byte " << int(action.byte)
                        << " clocks " << action.clocks);
         ++seen.actions;
+        const bool condition = action.kind == Action::Kind::Start || action.kind == Action::Kind::Stop;
+        if (condition && sends) {
+            const bool low = !wires.lets_go();
+            CHECK(rig.first_bit_low() == low);
+            ++seen.first_bits;
+            seen.first_low += low;
+            acknowledged = false;
+            same();
+            if (low) {  // neither is possible: the master clocks on
+                action.kind = Action::Kind::Read;
+                action.ack = draw.one_in(2);
+                action.clocks = 9;
+            }
+        }
+        sends = false;
         if (action.kind == Action::Kind::Start) wires.start();
         if (action.kind == Action::Kind::Stop) {
             wires.stop();
@@ -213,7 +241,8 @@ void compare(Rig<Bench>& rig, WireDspic& wires, Draw& draw, int actions, Seen& s
             action.clocks = 9;
             const auto answer = rig.act(action);
             if (action.kind != Action::Kind::Read) CHECK((answer->ack != 0) == low);
-            acknowledged = action.kind == Action::Kind::Read && action.ack && (wires.status() & 4) != 0;
+            acknowledged = sends = action.kind == Action::Kind::Read && action.ack && wires.sends();
+            if (action.kind == Action::Kind::Start) sends = wires.sends();
             if (!acknowledged) same();
             continue;
         }
@@ -239,6 +268,7 @@ void compare(Rig<Bench>& rig, WireDspic& wires, Draw& draw, int actions, Seen& s
         seen.overruns += overflow_before == 0 && (wires.status() & 0x40) != 0;
         // Where the master acknowledged a byte that was sent, the interrupt comes with the next.
         acknowledged = action.kind == Action::Kind::Read && action.ack;
+        sends = wires.sends();
         if (!acknowledged) same();
     }
     seen.loaded_early += wires.loaded_early();
@@ -271,6 +301,8 @@ void check(const Seen& seen) {
     CHECK(seen.sent > 100);
     CHECK(seen.acknowledged > 50);
     CHECK(seen.loaded_early > 50);
+    CHECK(seen.first_bits > 200);
+    CHECK(seen.first_low > 80);
 }
 
 }  // namespace

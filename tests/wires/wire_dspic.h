@@ -51,6 +51,8 @@ class WireDspic : public WireSlave {
             bits = bits << 1 | (bit ? 1u : 0u);
         return static_cast<std::uint16_t>(bits);
     }
+    /// The next clock is one of a byte of its own.
+    bool sends() const { return mode_ == Mode::Transmit && count_ == 0; }
     std::uint8_t received() const { return rcv_; }
     int interrupts() const { return interrupts_; }
     /// Bytes that were put into I2CTRN between the eighth and the ninth clock of the one before.

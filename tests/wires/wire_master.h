@@ -47,8 +47,8 @@ class WireMaster {
     void clear_sticky() { collides_ = overflow_ = lost_ = false; }
 
     /// The activity goes through its clocks; `others` is what slaves and other masters leave of SDA in the
-    /// first eight (a STOP meets the first of them), `low` whether one pulls it low in the ninth. `refuses`:
-    /// ACKDT.
+    /// first eight (a STOP or repeated START meets the first of them), `low` whether one pulls it low in the
+    /// ninth. `refuses`: ACKDT.
     void finish(std::uint8_t others, bool low, bool refuses) {
         const Activity done = activity_;
         activity_ = Activity::Idle;
@@ -56,6 +56,11 @@ class WireMaster {
         switch (done) {
         case Activity::Start:
         case Activity::Restart:
+            if (mine_ && others < 0x80) {  // SDA is low: no START can be made
+                lost_ = true;
+                mine_ = false;
+                break;
+            }
             s_ = mine_ = true;
             p_ = false;
             break;

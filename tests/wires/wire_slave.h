@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "cosim/core/message.h"
+#include "cosim/i2c/i2c_shared.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -69,6 +70,16 @@ inline cosim::I2cPhase phase_of(const Action& action, cosim::Time start, cosim::
     return phase;
 }
 
+/// What follows is no byte, but a STOP or START that meets the first bit of what the slave is to send.
+inline cosim::I2cPhase first_bit_from(cosim::Time start, cosim::Time period) {
+    cosim::I2cPhase phase;
+    phase.kind = cosim::I2cPhaseKind::Acknowledge;
+    phase.ack = cosim::kNoByteFollows;
+    phase.start = start;
+    phase.clock_period = period;
+    return phase;
+}
+
 class Draw {
   public:
     Draw(std::uint64_t seed, std::vector<std::uint8_t> addresses)
@@ -78,13 +89,11 @@ class Draw {
     std::uint64_t below(std::uint64_t n) { return random_.below(n); }
     std::uint8_t byte() { return static_cast<std::uint8_t>(random_.below(256)); }
 
-    /// `begun`: a START came and no STOP. `bytes_only`: the master has just acknowledged a byte.
-    Action action(bool begun, bool bytes_only) {
+    /// `begun`: a START came and no STOP.
+    Action action(bool begun) {
         Action action;
         const auto die = random_.below(16);
-        if (bytes_only) {
-            action.kind = die < 4 ? Action::Kind::Write : Action::Kind::Read;
-        } else if (!begun || die < 4) {
+        if (!begun || die < 4) {
             action.kind = Action::Kind::Start;
         } else {
             action.kind = die < 9 ? Action::Kind::Write : die < 14 ? Action::Kind::Read : Action::Kind::Stop;

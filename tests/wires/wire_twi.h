@@ -59,6 +59,8 @@ class WireTwi : public WireSlave {
         ninth(pulls, line);
         return line;
     }
+    /// The next clock is one of a byte of its own.
+    bool sends() const { return mode_ == Mode::Transmit && count_ == 0; }
     const std::vector<Service>& served() const { return served_; }
 
   private:

@@ -19,6 +19,7 @@ class WireTwiMaster {
     /// TWCR with TWEN, and with TWINT, which ends the wait of what went before.
     Wire control(bool start, bool stop, bool acknowledges) {
         interrupt_ = false;
+        meets_byte_ = owner_ && (status_ == 0x40 || status_ == 0x50);
         acknowledges_ = acknowledges;
         if (stop) return wire_ = start ? Wire::StopAndStart : Wire::Stop;
         if (start) return wire_ = Wire::Start;
@@ -44,10 +45,13 @@ class WireTwiMaster {
     void finish(std::uint8_t others, bool low) {
         switch (wire_) {
         case Wire::Start:
+            if (meets_byte_ && others < 0x80) return end(0x38, false);
             return end(owner_ ? 0x10 : 0x08, true);
         case Wire::StopAndStart:
+            if (meets_byte_ && others < 0x80) return end(0x38, false);
             return end(0x08, true);
         case Wire::Stop:
+            if (meets_byte_ && others < 0x80) return end(0x38, false);
             status_ = 0xF8;
             owner_ = false;
             return;
@@ -86,6 +90,8 @@ class WireTwiMaster {
     bool interrupt() const { return interrupt_; }
     bool write_collision() const { return write_collision_; }
     bool owner() const { return owner_; }
+    /// A slave that is to send has its first bit on SDA.
+    bool meets_byte() const { return meets_byte_; }
 
   private:
     void end(int status, bool owner) {
@@ -97,7 +103,8 @@ class WireTwiMaster {
     Wire wire_ = Wire::None;
     int status_ = 0xF8;
     std::uint8_t data_ = 0xFF;
-    bool interrupt_ = false, write_collision_ = false, owner_ = false, reads_ = false, acknowledges_ = false;
+    bool interrupt_ = false, write_collision_ = false, owner_ = false, reads_ = false, acknowledges_ = false,
+         meets_byte_ = false;
 };
 
 }  // namespace puckloop::wires

@@ -5,7 +5,8 @@
 //
 // Deviations
 //  1. A slave of XCK sees its edges without the synchroniser's two clocks, however fast they are.
-//  2. In SPI master mode a transfer begins in the clock after UDRn was written.
+//  2. In SPI master mode XCK's first half period begins two clocks after the write to UDRn: a clock to the
+//     shift register and one more, as a measurement has it to within four clocks (docs/measured_silicon.md).
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"

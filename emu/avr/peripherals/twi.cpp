@@ -30,7 +30,7 @@ constexpr std::uint8_t kStAddress = 0xA8, kStDataAck = 0xB8, kStDataNack = 0xC0,
 constexpr std::uint8_t kLostSrAddress = 0x68, kLostSrGeneral = 0x78, kLostStAddress = 0xB0, kBusError = 0x00;
 constexpr int kAnswerClocks = 8;
 constexpr int kClocksOfByte = 9;
-constexpr std::uint8_t kReleased = 0xFF;  // a byte that nobody drives
+constexpr std::uint8_t kReleased = 0xFF, kFirstBit = 0x80;  // kReleased: a byte that nobody drives
 constexpr unsigned kAddresses = 128;
 
 }  // namespace
@@ -146,6 +146,7 @@ void Twi::begin_phase(Kind kind, std::uint8_t byte, bool acknowledge) {
     phase.ack = acknowledge;
     phase.start = clock_.time_of(around_.now + 1);
     phase.clock_period = clock_.time_of(around_.now + 1 + period()) - phase.start;
+    state_.first_bit_asked = false;
     state_.awaiting = kind != Kind::Stop;
     pins_.twi_phase(phase);
 }
@@ -186,15 +187,8 @@ void Twi::go_on() {
     }
     if (state_.awaiting || state_.step != Step::None) return;  // an operation is under way
     const Cycle next = around_.now + 1;
-    if (control() & kTwsto) {
-        if (state_code() == kBusError) state_.owner = false;  // the lines are released, without a STOP
-        const bool waits = state_.owner && state_.shared;     // SCL rises when the other master lets it
-        if (state_.owner) begin_phase(Kind::Stop, 0, false);
-        state_.awaiting = waits;
-        if (waits) return;
-        return plan(Step::StopSent, next + period());
-    }
-    if (control() & kTwsta) return start(state_.owner, next);
+    if ((control() & (kTwsto | kTwsta)) && asks_first_bit()) return;
+    if (control() & (kTwsto | kTwsta)) return end_transfer(next);
     state_.start_waits = false;
     if (!state_.owner) return;
     switch (state_code()) {
@@ -214,13 +208,37 @@ void Twi::go_on() {
     }
 }
 
+/// STOP, or else a START.
+void Twi::end_transfer(Cycle next) {
+    if (!(control() & kTwsto)) return start(state_.owner, next);
+    if (state_code() == kBusError) state_.owner = false;  // the lines are released, without a STOP
+    const bool waits = state_.owner && state_.shared;     // SCL rises when the other master lets it
+    if (state_.owner) begin_phase(Kind::Stop, 0, false);
+    state_.awaiting = waits;
+    if (waits) return;
+    plan(Step::StopSent, next + period());
+}
+
+/// Where a slave is to send its next byte the first bit of it is on SDA.
+bool Twi::asks_first_bit() {
+    const unsigned code = state_code();
+    if (!state_.owner || state_.shared || (code != kMrAddressAck && code != kMrDataAck)) return false;
+    begin_phase(Kind::Acknowledge, 0, true);  // kNoByteFollows
+    state_.first_bit_asked = true;
+    return true;
+}
+
 void Twi::answer(const cosim::I2cPhase& phase) {
     if (!state_.awaiting) return;
+    if (std::exchange(state_.first_bit_asked, false) && phase.kind != Kind::BusLost) {
+        state_.awaiting = false;
+        return end_transfer(around_.now);
+    }
     if (phase.kind == cosim::kSharedNotice) {
         state_.shared = true;
         return;
     }
-    const bool is_byte = state_.phase.kind != Kind::Stop;
+    const bool is_byte = state_.phase.kind != Kind::Stop && state_.phase.kind != Kind::Acknowledge;
     if (phase.kind == Kind::BusLost && is_byte && state_.step == Step::None) {
         const Cycle over = clock_.first_cycle_at(state_.phase.start) + kClocksOfByte * period();
         if (over > around_.now) return answer_at(phase, over);
@@ -243,7 +261,7 @@ void Twi::answer(const cosim::I2cPhase& phase) {
         break;
     default:
         state_.next_status = state_.phase.ack ? kMrDataAck : kMrDataNack;
-        data() = phase.byte;
+        if (is_byte) data() = phase.byte;
         break;
     }
     if (phase.kind == Kind::BusLost) {
@@ -324,7 +342,8 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
         around_.events.cancel(slot_);
         due(this, around_.now);
     }
-    if (phase.kind == Kind::Acknowledge) return;  // the masters of this unit state it with the Read
+    // The ninth clock of a byte: the masters of this unit state it with the Read.
+    if (phase.kind == Kind::Acknowledge && phase.ack == 0) return;
     const bool was_slave = state_.slave;
     const bool ends = phase.kind == Kind::Stop || phase.kind == Kind::Start;
     state_.lost = false;
@@ -405,6 +424,9 @@ void Twi::finish_slave_phase(Cycle now) {
                                  : (state_.phase.byte & kRead) ? kLostStAddress
                                                                : kLostSrAddress;
         break;
+    case Kind::Acknowledge:  // no byte follows: what is on SDA once SCL is free
+        answer.ack = state_.sends && !(data() & kFirstBit) ? 1 : 0;
+        return pins_.twi_slave_answer(answer);
     default:
         finish_slave_byte(answer);
         break;

@@ -3,7 +3,9 @@
 // Interface".
 //
 // Deviations
-//  1. START and STOP take one SCL period each; a repeated START too.
+//  1. START and STOP take one SCL period each; a repeated START too. Where a slave is to send, each begins
+//     nine periods late: SCL is low until the slave's first bit is known, which is in the way where it is 0
+//     (status 0x38; the data sheet's tables do not list the case).
 //  2. Arbitration is the bus's: a lost one comes back as BusLost (status 0x38 when the ninth clock of the
 //     byte is over; a STOP that another master's 0 prevents, at once). Lost in the address, the winner's
 //     START comes in by slave_phase() first: the unit may be who it speaks to (0x68, 0x78, 0xB0).
@@ -69,19 +71,21 @@ class Twi {
         bool slave = false;        ///< addressed
         bool sends = false;        ///< to send
         bool general_call = false;
-        bool slave_waits = false;  ///< the master's phase waits for TWINT to be cleared
-        bool stop_waits = false;   ///< so does its STOP or repeated START
-        bool bus_taken = false;    ///< another master is between START and STOP
-        bool start_waits = false;  ///< for the bus to be free
-        Cycle address_ends = 0;    ///< of an address byte that is not ours
-        bool lost = false;         ///< arbitration, to the master that now speaks to us
-        bool shared = false;       ///< another master sends the same (cosim/i2c/i2c_shared.h)
+        bool slave_waits = false;      ///< the master's phase waits for TWINT to be cleared
+        bool stop_waits = false;       ///< so does its STOP or repeated START
+        bool bus_taken = false;        ///< another master is between START and STOP
+        bool start_waits = false;      ///< for the bus to be free
+        Cycle address_ends = 0;        ///< of an address byte that is not ours
+        bool lost = false;             ///< arbitration, to the master that now speaks to us
+        bool shared = false;           ///< another master sends the same (cosim/i2c/i2c_shared.h)
+        bool first_bit_asked = false;  ///< of a slave that sends, before our STOP or START
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(step, Step::None, Step::Answer);
             archive(owner, awaiting, next_status, code, phase, answer, slave, sends, general_call,
-                    slave_waits, stop_waits, bus_taken, start_waits, address_ends, lost, shared);
+                    slave_waits, stop_waits, bus_taken, start_waits, address_ends, lost, shared,
+                    first_bit_asked);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0xBC); }
@@ -94,6 +98,8 @@ class Twi {
     void interrupt(std::uint8_t code);
     void update_request();
     void go_on();
+    void end_transfer(Cycle next);
+    bool asks_first_bit();
     void start(bool repeated, Cycle now);
     void bus_free();
     bool powered() const;

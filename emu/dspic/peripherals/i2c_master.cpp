@@ -26,7 +26,8 @@ constexpr double kAcknowledgeClocks = 0.125;  // deviation 2
 constexpr double kByteClocks = 9.0;
 constexpr double kDataClocks = 8.0;
 constexpr std::uint8_t kReservedAddress = 0xFF;
-constexpr std::uint8_t kFirstBit = 0x80, kAllButFirst = 0x7F, kRead = 1;
+constexpr std::uint8_t kFirstBit = 0x80, kReleased = 0xFF, kRead = 1;
+constexpr std::uint8_t kNinthPlace = 8;
 
 }  // namespace
 
@@ -110,16 +111,68 @@ void I2cMaster::stop_condition_seen(bool stopped) {
 
 /// The next byte follows one that was read and not acknowledged: the slave is to know.
 void I2cMaster::end_byte_read(cosim::Time start) {
-    if (state_.received && !state_.acknowledged && !state_.shared)
+    if (state_.received && !state_.acknowledged && !state_.shared) {
         send(I2cPhaseKind::Acknowledge, 0, 0, start);
+        if (state_.reads) state_.heard = false;
+    }
     state_.received = false;
+}
+
+/// Whether the clocks of what is asked for are not those of a byte of slaves that receive, or its ninth.
+bool I2cMaster::out_of_step(Activity activity) const {
+    if (!state_.heard || state_.reads || state_.shared || !state_.owns_bus || state_.address_next)
+        return false;
+    return state_.clocks != (activity == Activity::Acknowledge ? kNinthPlace : 0);
+}
+
+/// Clocks of a byte, or of an acknowledge, that slaves find in the middle of theirs (deviation 3).
+void I2cMaster::send_loose(Activity activity, std::uint8_t byte) {
+    const int count = activity == Activity::Acknowledge ? 1
+                      : activity == Activity::Receive   ? static_cast<int>(kDataClocks)
+                                                        : static_cast<int>(kByteClocks);
+    const cosim::LooseClocks clocks{state_.clocks, count};
+    state_.received = state_.ninth_low = address_sent_ = false;
+    state_.clocks = static_cast<std::uint8_t>(clocks.after());
+    state_.activity = activity;
+    state_.loose = state_.awaits_answer = clocks.answered();
+    send(I2cPhaseKind::Data, byte, clocks.packed(), clock_.time_of(around_.now + 1));
+    if (clocks.answered()) return;
+    state_.ends = around_.now + 1 + this->clocks(1.0);
+    plan();
+}
+
+/// What a slave that sends puts on SDA next is in the way of a stop and of a repeated start.
+bool I2cMaster::asks_first_bit() const {
+    return state_.heard && state_.reads && !state_.shared && state_.owns_bus && state_.clocks == 0;
+}
+
+void I2cMaster::ask_first_bit(Activity activity, cosim::Time start) {
+    state_.activity = activity;
+    state_.awaits_answer = state_.first_bit_asked = true;
+    send(I2cPhaseKind::Acknowledge, 0, cosim::kNoByteFollows, start);
+}
+
+void I2cMaster::first_bit_known(bool high, Cycle at) {
+    const Activity activity = state_.activity;
+    state_.heard = state_.received = false;
+    if (!high) {
+        reg(kStat) |= kI2CxSTAT["BCL"];
+        state_.owns_bus = false;
+        state_.activity = Activity::Idle;
+        return complete(at);
+    }
+    if (activity == Activity::Stop) {
+        state_.owns_bus = false;
+        send(I2cPhaseKind::Stop, 0, 0, clock_.time_of(at));
+    }
+    begin_at(activity, at);
 }
 
 /// What is asked for makes a clock or a condition with SDA high, where a device that was read though it is to
 /// receive holds SDA low: its acknowledge, which ends with this clock.
 bool I2cMaster::finds_low(std::uint16_t asked) {
     if (!std::exchange(state_.ninth_low, false) || !state_.owns_bus || state_.shared) return false;
-    if (asked & (kI2CxCON["PEN"] | kI2CxCON["RSEN"])) return true;
+    if (asked & (kI2CxCON["PEN"] | kI2CxCON["RSEN"] | kI2CxCON["SEN"])) return true;
     return (asked & kI2CxCON["ACKEN"]) && (reg(kCon) & kI2CxCON["ACKDT"]);
 }
 
@@ -127,7 +180,7 @@ bool I2cMaster::finds_low(std::uint16_t asked) {
 void I2cMaster::collide(Cycle at) {
     std::uint16_t& stat = reg(kStat);
     stat = static_cast<std::uint16_t>((stat | kI2CxSTAT["BCL"]) & ~(kI2CxSTAT["TRSTAT"] | kI2CxSTAT["TBF"]));
-    state_.collides = state_.owns_bus = state_.received = false;
+    state_.collides = state_.owns_bus = state_.received = state_.heard = false;
     send(I2cPhaseKind::BusLost, 0, 0, clock_.time_of(at));
     reg(kCon) = static_cast<std::uint16_t>(reg(kCon) & ~kOneAtATime);
     state_.activity = Activity::Idle;
@@ -145,11 +198,11 @@ void I2cMaster::complete(Cycle at) {
         stop_condition_seen(false);
         state_.owns_bus = true;
         state_.address_next = true;
-        state_.received = state_.ninth_low = false;
+        state_.received = state_.ninth_low = state_.heard = false;
         break;
     case Activity::Stop:
         stop_condition_seen(true);
-        state_.shared = false;
+        state_.shared = state_.heard = false;
         break;
     case Activity::Transmit:
         stat = static_cast<std::uint16_t>(stat & ~(kI2CxSTAT["TRSTAT"] | kI2CxSTAT["TBF"]));
@@ -205,29 +258,40 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     }
     state_.buffer_empty = kNoCycle;
     around_.events.cancel(slot_);
+    if (std::exchange(state_.first_bit_asked, false))
+        return first_bit_known(phase.kind != I2cPhaseKind::BusLost, at);
     std::uint16_t& stat = reg(kStat);
     if (phase.kind == I2cPhaseKind::BusLost) {
         stat |= kI2CxSTAT["BCL"];
-        state_.owns_bus = state_.shared = state_.ninth_low = state_.behind_ninth = false;
+        state_.owns_bus = state_.shared = state_.ninth_low = state_.heard = state_.loose = false;
         if (state_.activity == Activity::Stop) state_.activity = Activity::Idle;  // none was made
+    } else if (std::exchange(state_.loose, false)) {
+        state_.ninth_low = phase.ack & cosim::LooseClocks::kHeldLow;
+        if (state_.activity == Activity::Receive) take_byte(phase);
+        if (state_.activity == Activity::Transmit)
+            assign(stat, kI2CxSTAT["ACKSTAT"], !(phase.ack & cosim::LooseClocks::kLineLow));
     } else if (state_.activity == Activity::Acknowledge || state_.activity == Activity::Stop) {
         // The bus says when it is over.
     } else if (state_.activity == Activity::Transmit) {
-        const bool later = std::exchange(state_.behind_ninth, false) && !state_.reads;
-        state_.ninth_low = later && phase.ack;  // of one that receives: its acknowledge is still to come
-        assign(stat, kI2CxSTAT["ACKSTAT"], later || !phase.ack);
+        assign(stat, kI2CxSTAT["ACKSTAT"], !phase.ack);
         if (!phase.ack && address_sent_) ++refused_[sent_address_];
+        if (address_sent_) state_.heard = phase.ack;
     } else {
-        const bool first_low = std::exchange(state_.ninth_low, phase.ack == cosim::kDeviceAcknowledges);
-        state_.behind_ninth = true;
-        if (stat & kI2CxSTAT["RBF"]) {
-            stat |= kI2CxSTAT["I2COV"];
-        } else {
-            reg(kRcv) = first_low ? phase.byte & kAllButFirst : phase.byte;
-            stat |= kI2CxSTAT["RBF"];
-        }
+        state_.ninth_low = phase.ack == cosim::kDeviceAcknowledges;
+        state_.clocks = kNinthPlace;
+        take_byte(phase);
     }
     complete(at);
+}
+
+void I2cMaster::take_byte(const cosim::I2cPhase& phase) {
+    std::uint16_t& stat = reg(kStat);
+    if (stat & kI2CxSTAT["RBF"]) {
+        stat |= kI2CxSTAT["I2COV"];
+    } else {
+        reg(kRcv) = phase.byte;
+        stat |= kI2CxSTAT["RBF"];
+    }
 }
 
 Cycle I2cMaster::earliest(Cycle now) const {
@@ -268,14 +332,17 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
     state.buffer_empty = self.around_.now + 1 + self.clocks(kDataClocks);
     self.around_.events.schedule(self.slot_, state.buffer_empty);
     const bool address_byte = state.address_next;
-    if (!address_byte && !state.shared) {
-        const bool first_is_ninth = state.ninth_low || (state.received && state.behind_ninth);
-        if (state.ninth_low && (value & kFirstBit)) return self.transmit_first_bit();
-        if (first_is_ninth && !(value & kFirstBit))
-            return self.transmit_behind_ninth(static_cast<std::uint8_t>(value));
+    if (self.out_of_step(Activity::Transmit))
+        return self.send_loose(Activity::Transmit, static_cast<std::uint8_t>(value));
+    const bool behind_ninth = state.heard && state.reads && state.clocks == kNinthPlace && !state.shared;
+    if (!address_byte && behind_ninth && !(value & kFirstBit))
+        return self.transmit_behind_ninth(static_cast<std::uint8_t>(value));
+    if (!address_byte) {
+        self.end_byte_read(self.clock_.time_of(self.around_.now + 1));
+        if (state.reads) state.heard = false;  // its byte is not acknowledged
     }
-    if (!address_byte) self.end_byte_read(self.clock_.time_of(self.around_.now + 1));
-    state.address_next = state.behind_ninth = false;
+    state.address_next = false;
+    state.clocks = 0;
     if (address_byte) state.reads = value & kRead;
     self.address_sent_ = address_byte;
     self.sent_address_ = static_cast<std::uint8_t>(value >> 1 & 0x7F);
@@ -283,19 +350,11 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
               self.clock_.time_of(self.around_.now + 1));
 }
 
-/// A 1 in the clock in which a device acknowledges: lost at once.
-void I2cMaster::transmit_first_bit() {
-    state_.awaits_answer = state_.ninth_low = false;
-    state_.collides = true;
-    state_.buffer_empty = kNoCycle;
-    state_.ends = around_.now + 1 + clocks(kStartClocks);
-    plan();
-}
-
-/// The first bit, a 0, was the ninth clock of the byte before (deviation 3).
+/// The first bit, a 0, was the ninth clock of the slave's byte before, whose next is then over but for its
+/// own.
 void I2cMaster::transmit_behind_ninth(std::uint8_t byte) {
-    state_.received = state_.ninth_low = address_sent_ = false;
-    state_.behind_ninth = true;
+    state_.ninth_low = address_sent_ = state_.acknowledged = false;
+    state_.received = true;
     send(I2cPhaseKind::Write, static_cast<std::uint8_t>(byte << 1 | 1), cosim::kBehindNinthClock,
          clock_.time_of(around_.now + 1));
 }
@@ -334,12 +393,13 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     }
     const std::uint16_t asked = value & mask & kOneAtATime;
     if (!(con & kI2CxCON["I2CEN"]) || !asked || state.activity != Activity::Idle || self.busy()) return;
-    if (!(asked & (kI2CxCON["SEN"] | kI2CxCON["RCEN"])) && self.finds_low(asked)) {
+    if (!(asked & kI2CxCON["RCEN"]) && self.finds_low(asked)) {
         state.collides = true;
         con = static_cast<std::uint16_t>(con | (asked & kOneAtATime));
-        return self.begin(asked & kI2CxCON["RSEN"]  ? Activity::Restart
-                          : asked & kI2CxCON["PEN"] ? Activity::Stop
-                                                    : Activity::Acknowledge);
+        return self.begin(asked & kI2CxCON["SEN"]    ? Activity::Start
+                          : asked & kI2CxCON["RSEN"] ? Activity::Restart
+                          : asked & kI2CxCON["PEN"]  ? Activity::Stop
+                                                     : Activity::Acknowledge);
     }
     const cosim::Time start = self.clock_.time_of(self.around_.now + 1);
     if (asked & kI2CxCON["SEN"]) {
@@ -349,12 +409,15 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             return;
         }
         con |= kI2CxCON["SEN"];
+        if (self.asks_first_bit()) return self.ask_first_bit(Activity::Start, start);
         self.begin(Activity::Start);
     } else if (asked & kI2CxCON["RSEN"]) {
         con |= kI2CxCON["RSEN"];
+        if (self.asks_first_bit()) return self.ask_first_bit(Activity::Restart, start);
         self.begin(Activity::Restart);
     } else if (asked & kI2CxCON["PEN"]) {
         con |= kI2CxCON["PEN"];
+        if (self.asks_first_bit()) return self.ask_first_bit(Activity::Stop, start);
         const bool owned = state.owns_bus;
         state.owns_bus = false;
         if (state.shared) {  // SCL rises when the other master lets it
@@ -372,6 +435,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
             self.begin(Activity::Receive);
             return;
         }
+        if (self.out_of_step(Activity::Receive)) return self.send_loose(Activity::Receive, kReleased);
         self.end_byte_read(start);
         state.activity = Activity::Receive;
         state.awaits_answer = state.received = true;
@@ -384,8 +448,12 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         self.send(I2cPhaseKind::Read, 0, state.shared ? cosim::kAcknowledgedLater : std::uint8_t{1}, start);
     } else {
         con |= kI2CxCON["ACKEN"];
-        state.behind_ninth = false;
-        state.acknowledged = !(con & kI2CxCON["ACKDT"]);
+        const bool refuses = con & kI2CxCON["ACKDT"];
+        if (self.out_of_step(Activity::Acknowledge))
+            return self.send_loose(Activity::Acknowledge, refuses ? kReleased : 0);
+        if (state.reads && refuses && state.clocks == kNinthPlace) state.heard = false;
+        state.clocks = 0;
+        state.acknowledged = !refuses;
         if (!state.shared || !state.owns_bus) return self.begin(Activity::Acknowledge);
         state.activity = Activity::Acknowledge;
         state.awaits_answer = true;

@@ -12,10 +12,11 @@
 //     that the program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long
 //     as in silicon.
 //  3. A slave always gets "acknowledged" for a byte read; it learns of a not-acknowledge by the stop,
-//  repeated
-//     start or byte that follows. Where the program leaves out the ninth clock, the first bit of a byte that
-//     it transmits next is that clock: a 0 acknowledges, and the rest is a clock ahead of the slave's byte. A
-//     second byte whose ninth clock is left out is in step again.
+//     repeated start or byte that follows. Where ninth clocks were left out or given too often, clocks out of
+//     step with a slave's bytes take nine a byte, a byte received too (8 in silicon), as does the ninth clock
+//     of a slave's byte in which it is asked for; one acknowledge more in a slave's own byte is no clock of
+//     it. A stop or repeated start where a slave is to send begins nine clocks late: SCL is low until the
+//     slave's first bit is known, and a 0 is a collision (DS70068, 21.5.4 and 21.5.5).
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  What
 //     the program asks for before, with I2CEN = 1 again, begins after that: up to nine clocks late.
@@ -82,21 +83,25 @@ class I2cMaster {
         bool address_next = false;  ///< the next byte follows a (repeated) start
         bool awaits_answer = false;
         bool stop_when_answered = false;  ///< switched off meanwhile
+        bool heard = false;               ///< the address was acknowledged, and a slave is there still
+        std::uint8_t clocks = 0;          ///< that the slave's byte has had, 0 to 8
+        bool loose = false;               ///< what is under way is out of step with it
+        bool first_bit_asked = false;     ///< of a slave that sends, before a stop or repeated start
         bool received = false;            ///< a byte, since the address ...
         bool acknowledged = false;        ///< ... by ACKEN, the newest
         bool shared = false;              ///< another master sends the same (cosim/i2c/i2c_shared.h)
         bool reads = false;               ///< the address byte had R/W = 1
         bool ninth_low = false;           ///< a device holds SDA low in the clock that comes
         bool collides = false;            ///< what is under way finds SDA low
-        bool behind_ninth = false;        ///< the ninth clock of the byte read is the next byte's first
         Cycle buffer_empty = kNoCycle;
         Cycle ends = kNoCycle;  ///< of an activity that needs no answer
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(activity, Activity::Idle, Activity::Acknowledge);
-            archive(owns_bus, address_next, awaits_answer, stop_when_answered, received, acknowledged, shared,
-                    reads, ninth_low, collides, behind_ninth, buffer_empty, ends);
+            archive.bounded(clocks, 0, 8);
+            archive(owns_bus, address_next, awaits_answer, stop_when_answered, heard, loose, first_bit_asked,
+                    received, acknowledged, shared, reads, ninth_low, collides, buffer_empty, ends);
         }
     };
 
@@ -117,8 +122,13 @@ class I2cMaster {
     void end_byte_read(cosim::Time start);
     bool finds_low(std::uint16_t asked);
     void collide(Cycle at);
-    void transmit_first_bit();
     void transmit_behind_ninth(std::uint8_t byte);
+    bool out_of_step(Activity activity) const;
+    void send_loose(Activity activity, std::uint8_t byte);
+    bool asks_first_bit() const;
+    void ask_first_bit(Activity activity, cosim::Time start);
+    void first_bit_known(bool high, Cycle at);
+    void take_byte(const cosim::I2cPhase& phase);
     void complete(Cycle at);
     void stop_condition_seen(bool stopped);
     void switch_off();

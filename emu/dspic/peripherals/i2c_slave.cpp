@@ -1,5 +1,6 @@
 #include "emu/dspic/peripherals/i2c_slave.h"
 
+#include "cosim/i2c/i2c_shared.h"
 #include "emu/dspic/peripherals/i2c_registers.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ using namespace i2c;
 
 constexpr int kAnswerClocks = 8;
 constexpr int kByteClocks = 9;
-constexpr std::uint8_t kIdleLine = 0xFF;
+constexpr std::uint8_t kIdleLine = 0xFF, kFirstBit = 0x80;
 
 Time clocks(const I2cPhase& phase, int count) {
     return phase.clock_period * count;
@@ -95,7 +96,10 @@ void I2cSlave::phase(const I2cPhase& phase, Cycle at) {
         stop();
         break;
     case I2cPhaseKind::Acknowledge:  // the ninth clock of the byte before, where that was not known then
-        if (phase.ack == 0) not_acknowledged();
+        if (phase.ack == 0)
+            not_acknowledged();
+        else
+            first_bit(phase, at);
         break;
     case I2cPhaseKind::Data:
     case I2cPhaseKind::BusLost:
@@ -138,7 +142,19 @@ void I2cSlave::start(const I2cPhase& phase) {
 void I2cSlave::byte(const I2cPhase& phase, Cycle at) {
     if (!transmitting()) return open(phase);
     state_.open = phase;
-    state_.released = phase.start;
+    next_byte(at);
+}
+
+/// A START or STOP follows instead of a byte, and meets the first bit of the one that is to be sent.
+void I2cSlave::first_bit(const I2cPhase& phase, Cycle at) {
+    if (!transmitting()) return open(phase);
+    state_.open = phase;
+    next_byte(at);
+    state_.byte_sent = false;
+}
+
+void I2cSlave::next_byte(Cycle at) {
+    state_.released = state_.open.start;
     state_.step_due = kNoCycle;
     if (state_.byte_sent) {  // the byte before was acknowledged
         wait_for_byte();
@@ -146,9 +162,18 @@ void I2cSlave::byte(const I2cPhase& phase, Cycle at) {
     }
     // Until the address is shown SCLREL still reads as before it.
     if (released() && state_.shown_due == kNoCycle)
-        shift(phase.start);
+        let_go(state_.open.start);
     else
         state_.step = Step::Hold;
+}
+
+/// SCL goes up from `from` on: for the byte to send, or for what its first bit leaves of SDA.
+void I2cSlave::let_go(Time from) {
+    if (state_.open.kind != I2cPhaseKind::Acknowledge) return shift(from);
+    state_.released = std::max(from, state_.open.start);
+    state_.step = Step::Answer;
+    state_.step_due =
+        std::max(cycle_before(state_.released + clocks(state_.open, kAnswerClocks)), around_.now);
 }
 
 /// SDA is high in the ninth clock of a byte sent: the transfer is over for the slave, until the next START.
@@ -207,7 +232,7 @@ void I2cSlave::show(bool address, std::uint8_t byte, Cycle at) {
         if (state_.sends && state_.addressed) {
             wait_for_byte();
             // The master may have begun the byte before the address was shown.
-            if (state_.step == Step::Hold && released()) shift(state_.open.start);
+            if (state_.step == Step::Hold && released()) let_go(state_.open.start);
         }
     }
     around_.interrupts.raise(setup_.slave_irq, at);
@@ -238,6 +263,8 @@ void I2cSlave::answer(Time stretch, bool acknowledge, std::uint8_t byte) {
 void I2cSlave::eighth_clock(Cycle at) {
     const Time eighth = state_.open.start + clocks(state_.open, kAnswerClocks);
     const Time late = std::max<Time>(0, clock_.time_of(at) - eighth);
+    if (state_.open.kind == I2cPhaseKind::Acknowledge)
+        return answer(late, transmitting() && !(reg(kTrn) & kFirstBit), kIdleLine);
     const bool is_address = state_.open.kind == I2cPhaseKind::Start;
     const bool is_data = !is_address && !state_.sends;
     const std::uint8_t received = state_.open.kind == I2cPhaseKind::Read ? kIdleLine : state_.open.byte;
@@ -279,7 +306,8 @@ void I2cSlave::due(void* owner, Cycle due) {
         state.byte_sent = true;
         const bool writes = state.open.kind == I2cPhaseKind::Write;  // both send: SDA is the and of it
         const auto sent = static_cast<std::uint8_t>(self.reg(kTrn) & (writes ? state.open.byte : kIdleLine));
-        const bool goes_on = !writes && state.open.ack != 0;
+        // Of a byte in step with the master's its ninth clock is high; else it is still to come.
+        const bool goes_on = writes ? state.open.ack == cosim::kBehindNinthClock : state.open.ack != 0;
         self.answer(state.released - state.open.start, !writes, sent);
         if (!goes_on)
             state.ended_due = self.clock_.first_cycle_at(state.released + clocks(state.open, kByteClocks));
@@ -316,7 +344,7 @@ void I2cSlave::control_written(std::uint16_t old) {
     if (!(con & kI2CxCON["SCLREL"]) || (old & kI2CxCON["SCLREL"])) return;
     const Time free = clock_.time_of(around_.now + 1);
     if (state_.step == Step::Hold) {
-        shift(free);
+        let_go(free);
     } else if (state_.step == Step::Stretch) {
         const Time eighth = state_.open.start + clocks(state_.open, kAnswerClocks);
         answer(std::max<Time>(0, free - eighth), state_.acknowledge, kIdleLine);

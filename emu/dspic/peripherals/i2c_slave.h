@@ -25,8 +25,9 @@
 //  1. With STREN = 1 a received byte is shown (RBF, SI2CxIF, SCLREL = 0) at the 8th clock and its answer
 //     waits for SCLREL: the byte ends on the bus when it would in silicon, the program sees it one clock
 //     earlier.
-//  2. That the master acknowledged a byte is known by its next Read: the interrupt comes with that, at the
-//     start of the next byte. A stop or a start instead means not acknowledged: no interrupt.
+//  2. That the master acknowledged a byte is known by what follows: its next Read, or that it asks for the
+//     next bit because a stop or a start follows (kNoByteFollows). The interrupt comes with that, at the
+//     start of the next byte. A stop or a start at once means not acknowledged: no interrupt.
 //  3. SMBus levels and slew rate (SMEN, DISSLW) are stored.
 //  4. S and P follow what reaches the module: transfers to other devices do not.
 //  5. The slave goes on in Sleep and Idle.
@@ -72,7 +73,7 @@ class I2cSlave {
         None,
         Answer,   ///< the 8th clock of an address or of a byte received
         Stretch,  ///< a received byte is shown, SCL held until SCLREL is set
-        Hold,     ///< a byte to send waits for SCLREL
+        Hold,     ///< a byte to send, or its first bit, waits for SCLREL
         Shift     ///< a byte is being sent
     };
     struct State {
@@ -104,6 +105,9 @@ class I2cSlave {
     void start(const cosim::I2cPhase& phase);
     void byte(const cosim::I2cPhase& phase, Cycle at);
     void not_acknowledged();
+    void first_bit(const cosim::I2cPhase& phase, Cycle at);
+    void next_byte(Cycle at);
+    void let_go(cosim::Time from);
     void end_byte_sent();
     void stop();
     void open(const cosim::I2cPhase& phase);

@@ -315,10 +315,9 @@ std::int16_t BoardKernel::tty_events() const {
     return static_cast<std::int16_t>(events);
 }
 
-/// Edge-triggered, there is something new when a byte came in or went out. Deviation: without a network it is
-/// as level-triggered.
+/// Edge-triggered, there is something new when a byte came in or went out.
 std::int16_t BoardKernel::tty_news(wire::PollEntry& entry) const {
-    if (entry.seen == 0 || !network_) return tty_events();
+    if (entry.seen == 0) return tty_events();
     const wire::TtyCounters counters = tty_.counters();
     const std::uint32_t activity = 1 + (counters.received + counters.sent) % (wire::kNeverSeen - 1);
     const bool news = std::exchange(entry.seen, activity) != activity;

@@ -272,6 +272,11 @@ std::unique_ptr<Process> Launcher::start() {
             env.emplace_back(text);
         }
     }
+    // What Python keeps for its next start would make that one another: its calls take time.
+    constexpr std::string_view kNoByteCode = "PYTHONDONTWRITEBYTECODE=";
+    if (std::none_of(env.begin(), env.end(),
+                     [](const std::string& text) { return text.starts_with(kNoByteCode); }))
+        env.push_back(std::string(kNoByteCode) + "1");
     for (const auto& [key, value] : spec_.env) {
         std::erase_if(env, [&](const std::string& text) { return text.starts_with(key + "="); });
         env.push_back(key + "=" + value);

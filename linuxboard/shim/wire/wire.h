@@ -109,8 +109,8 @@ struct PollEntry {
     std::int32_t handle = -1;
     std::int16_t events = 0;
     std::int16_t returned = 0;
-    /// Of a socket; 0: level-triggered. Else it is ready only if its activity is another one; the same back
-    /// with the present activity.
+    /// Of a socket or serial port; 0: level-triggered. Else it is ready only if its activity is another one;
+    /// the same back with the present activity.
     std::uint32_t seen = 0;
 };
 inline constexpr std::uint32_t kNeverSeen = 0xffffffff;

@@ -10,6 +10,7 @@
 #include <stdint.h>
 #include <sys/auxv.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -209,6 +210,28 @@ int main(int argc, char** argv) {
     }
     if (strcmp(how, "ptrace") == 0) return (int)ptrace(PTRACE_TRACEME, 0, 0, 0);
     if (strcmp(how, "SYS_ptrace") == 0) return (int)syscall(SYS_ptrace, PTRACE_TRACEME, 0, 0, 0);
+    if (strcmp(how, "unshare") == 0) return unshare(CLONE_NEWPID | CLONE_NEWUSER);
+    if (strcmp(how, "SYS_unshare") == 0) return (int)syscall(SYS_unshare, CLONE_NEWUSER);
+    if (strcmp(how, "setns") == 0) return setns(0, 0);
+    if (strcmp(how, "SYS_setns") == 0) return (int)syscall(SYS_setns, 0, 0);
+    if (strcmp(how, "seccomp") == 0) return prctl(PR_SET_SECCOMP, 1);
+    if (strcmp(how, "SYS_seccomp") == 0) return (int)syscall(SYS_seccomp, 0, 0, 0);
+    if (strcmp(how, "SYS_prctl") == 0) return (int)syscall(SYS_prctl, PR_SET_SECCOMP, 1, 0, 0, 0);
+    if (strcmp(how, "dispatch") == 0) return prctl(59, 0, 0, 0, 0);
+    if (strcmp(how, "harmless") == 0) {
+        char name[16] = "";
+        int death = 0, none = -1;
+        const int shared = unshare(CLONE_FILES);
+        prctl(PR_SET_NAME, "robot");
+        prctl(PR_GET_NAME, name);
+        prctl(PR_SET_PDEATHSIG, SIGTERM);
+        prctl(PR_GET_PDEATHSIG, &death);
+        syscall(SYS_prctl, PR_SET_PDEATHSIG, 0, 0, 0, 0);
+        prctl(PR_GET_PDEATHSIG, &none);
+        printf("unshare %d, name %s, death signal %d, none %d, wrong %d\n", shared, name, death, none,
+               prctl(PR_SET_PDEATHSIG, 1000));
+        return 0;
+    }
     if (strcmp(how, "SYS_openat") == 0) {
         const int other = (int)syscall(SYS_openat, AT_FDCWD, "/dev/ttyS0", O_RDWR, 0);
         return syscall(SYS_write, other, "ok", 2) != 2;

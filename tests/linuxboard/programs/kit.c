@@ -69,6 +69,21 @@ static void epolls(int serial) {
     }
 }
 
+/* Edge-triggered: what was reported is not again before something has changed. */
+static void epoll_edges(int serial) {
+    int set = epoll_create1(0);
+    struct epoll_event event = {EPOLLIN | EPOLLOUT | EPOLLET, {.fd = serial}}, got;
+    epoll_ctl(set, EPOLL_CTL_ADD, serial, &event);
+    for (int i = 0; i < 5; i++) {
+        int n = epoll_wait(set, &got, 1, 50);
+        printf("edge %d %x at %ld\n", n, n < 1 ? 0 : (unsigned)got.events, ms());
+        if (i == 2 && write(serial, "w", 1) != 1) exit(4);
+    }
+    int bus = open("/dev/i2c-3", O_RDWR);
+    int added = epoll_ctl(set, EPOLL_CTL_ADD, bus, &event);
+    printf("i2c %d %s\n", added, strerror(errno));
+}
+
 static int ends[2];
 static void* pipe_writer(void* argument) {
     usleep(12000);
@@ -183,6 +198,7 @@ int main(int argc, char** argv) {
     clock_gettime(CLOCK_MONOTONIC, &origin);
     if (strcmp(what, "timers") == 0) timers(serial);
     if (strcmp(what, "epoll") == 0) epolls(serial);
+    if (strcmp(what, "epoll-edges") == 0) epoll_edges(serial);
     if (strcmp(what, "pipes") == 0) pipes(serial);
     if (strcmp(what, "locks") == 0) locks();
     if (strcmp(what, "streams") == 0) streams();

@@ -93,8 +93,11 @@ bool poll_here(const wire::Request& request, const void* data, std::size_t size,
         return entry;
     };
     const bool has_room = tty.hung_up != 0 || tty.room >= kReportedRoom;
-    for (std::size_t at = 0; at < size; at += sizeof(wire::PollEntry))
-        if (!has_room && (entry_at(at).events & kOutput) != 0) return false;
+    for (std::size_t at = 0; at < size; at += sizeof(wire::PollEntry)) {
+        const wire::PollEntry entry = entry_at(at);
+        if (entry.seen != 0) return false;  // edge-triggered: the node knows what is new
+        if (!has_room && (entry.events & kOutput) != 0) return false;
+    }
     const int happened = (input_ready(tty) ? kInput : 0) | kOutput | (tty.hung_up != 0 ? kHungUp : 0);
     for (std::size_t at = 0; at < size; at += sizeof(wire::PollEntry)) {
         wire::PollEntry entry = entry_at(at);

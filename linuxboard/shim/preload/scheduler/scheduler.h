@@ -15,6 +15,7 @@
 #include <signal.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -76,6 +77,21 @@ Thread* self();
 Time now();
 /// A call that does not block: time passes, and other threads may get their turn.
 void charge(Time cost);
+/// The same of a lock, an unlock or a signal of one. A process with one thread has nobody to take it from,
+/// and is charged nothing: how many locks a language's library takes depends on the host's files (Python
+/// takes eight for each entry of a directory in which it looks for modules). So many in a row that time must
+/// pass are charged all the same. True if it was charged.
+bool charge_lock();
+/// A lock is tried: one that is taken already is charged in any case.
+template <class Attempt>
+int try_lock(Attempt attempt) {
+    const bool charged = charge_lock();
+    const int result = attempt();
+    const int error = errno;
+    if (result != 0 && !charged) charge(page().charges.sync);
+    errno = error;
+    return result;
+}
 /// Gives way to every thread that is ready.
 void yield_token();
 

@@ -24,12 +24,12 @@ bool futex(long* result, std::uint32_t* word, int operation, std::uint32_t value
     if (command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET) {
         const int count = static_cast<int>(std::min<std::uint32_t>(value, INT_MAX));
         *result = wake(word, count, command == FUTEX_WAKE_BITSET ? bits : ~std::uint64_t{0});
-        charge(page().charges.sync);
+        charge_lock();
         return true;
     }
     if (!waits) return false;
     mark_call("futex");
-    charge(page().charges.sync);
+    charge_lock();
     *result = -1;
     std::uint32_t current = 0;
     timespec time{};

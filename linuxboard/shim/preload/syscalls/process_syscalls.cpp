@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
+#include "linuxboard/shim/preload/processes/namespace_calls.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
 #include "linuxboard/shim/preload/syscalls/syscalls.h"
 
@@ -148,6 +149,19 @@ bool process_syscall(long number, const Argument (&a)[6], long* result) {
     case SYS_exit:
         if (thread_count() == 1) _exit(a[0]);
         return false;
+    case SYS_unshare:
+        refuse_namespaces("syscall(SYS_unshare)", static_cast<std::uint64_t>(a[0].value));
+        return false;
+    case SYS_setns:
+        refuse_joining("syscall(SYS_setns)");
+        return true;
+    case SYS_seccomp: {
+        constexpr long kSetModeFilter = 1;  // and 0, strict; the others ask
+        if (a[0].value <= kSetModeFilter) refuse_filter("syscall(SYS_seccomp)");
+        return false;
+    }
+    case SYS_prctl:
+        return own_prctl(a[0].value, a[1].value, result);
     case SYS_ptrace:
         refuse_call("syscall(SYS_ptrace)", "with which debuggers stop processes outside of simulated time");
         return true;

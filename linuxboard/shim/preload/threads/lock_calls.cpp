@@ -22,7 +22,7 @@ namespace {
 /// Takes a lock by `attempt` (0 or EBUSY), waiting on `key` in between.
 template <typename Attempt>
 int lock_by(const void* key, Time deadline, Attempt attempt, bool shared = false) {
-    charge(page().charges.sync);
+    charge_lock();
     while (true) {
         const int error = attempt();
         if (error != EBUSY) return error;
@@ -80,12 +80,12 @@ std::uint64_t* signals_of(pthread_cond_t* condition) {
 void signal_condition(pthread_cond_t* condition, int count) {
     if (is_shared(condition)) __atomic_add_fetch(signals_of(condition), 1, __ATOMIC_ACQ_REL);
     wake(condition, count);
-    charge(page().charges.sync);
+    charge_lock();
 }
 
 int wait_condition(pthread_cond_t* condition, pthread_mutex_t* mutex, Time deadline) {
     mark_call("pthread_cond_wait");
-    charge(page().charges.sync);
+    charge_lock();
     const bool shared = is_shared(condition);
     const std::uint64_t before = shared ? __atomic_load_n(signals_of(condition), __ATOMIC_ACQUIRE) : 0;
     if (const int error = unlock_mutex(mutex)) return error;
@@ -113,8 +113,7 @@ SHIM_EXPORT int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
 
 SHIM_EXPORT int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {
     if (!active()) return REAL(pthread_mutex_trylock)(mutex);
-    charge(page().charges.sync);
-    return REAL(pthread_mutex_trylock)(mutex);
+    return try_lock([mutex] { return REAL(pthread_mutex_trylock)(mutex); });
 }
 
 SHIM_EXPORT int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
@@ -132,7 +131,7 @@ SHIM_EXPORT int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* 
 SHIM_EXPORT int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
     if (!active()) return REAL(pthread_mutex_unlock)(mutex);
     const int error = unlock_mutex(mutex);
-    charge(page().charges.sync);
+    charge_lock();
     return error;
 }
 
@@ -205,20 +204,20 @@ SHIM_EXPORT int pthread_rwlock_timedwrlock(pthread_rwlock_t* lock, const timespe
 }
 
 SHIM_EXPORT int pthread_rwlock_tryrdlock(pthread_rwlock_t* lock) noexcept {
-    if (active()) charge(page().charges.sync);
-    return REAL(pthread_rwlock_tryrdlock)(lock);
+    if (!active()) return REAL(pthread_rwlock_tryrdlock)(lock);
+    return try_lock([lock] { return REAL(pthread_rwlock_tryrdlock)(lock); });
 }
 
 SHIM_EXPORT int pthread_rwlock_trywrlock(pthread_rwlock_t* lock) noexcept {
-    if (active()) charge(page().charges.sync);
-    return REAL(pthread_rwlock_trywrlock)(lock);
+    if (!active()) return REAL(pthread_rwlock_trywrlock)(lock);
+    return try_lock([lock] { return REAL(pthread_rwlock_trywrlock)(lock); });
 }
 
 SHIM_EXPORT int pthread_rwlock_unlock(pthread_rwlock_t* lock) noexcept {
     const int error = REAL(pthread_rwlock_unlock)(lock);
     if (!active()) return error;
     wake(lock, INT_MAX);
-    charge(page().charges.sync);
+    charge_lock();
     return error;
 }
 
@@ -228,8 +227,8 @@ SHIM_EXPORT int pthread_spin_lock(pthread_spinlock_t* lock) noexcept {
 }
 
 SHIM_EXPORT int pthread_spin_trylock(pthread_spinlock_t* lock) noexcept {
-    if (active()) charge(page().charges.sync);
-    return REAL(pthread_spin_trylock)(lock);
+    if (!active()) return REAL(pthread_spin_trylock)(lock);
+    return try_lock([lock] { return REAL(pthread_spin_trylock)(lock); });
 }
 
 SHIM_EXPORT int pthread_spin_unlock(pthread_spinlock_t* lock) noexcept {

@@ -26,7 +26,7 @@ bool is_shared(const sem_t* semaphore) {
 int wait_semaphore(sem_t* semaphore, Time deadline) {
     mark_call("sem_wait");
     pthread_testcancel();
-    charge(page().charges.sync);
+    charge_lock();
     while (REAL(sem_trywait)(semaphore) != 0) {
         if (errno != EAGAIN) return -1;
         if (deadline <= now()) {
@@ -62,15 +62,15 @@ SHIM_EXPORT int sem_timedwait(sem_t* semaphore, const timespec* limit) {
 }
 
 SHIM_EXPORT int sem_trywait(sem_t* semaphore) noexcept {
-    if (active()) charge(page().charges.sync);
-    return REAL(sem_trywait)(semaphore);
+    if (!active()) return REAL(sem_trywait)(semaphore);
+    return try_lock([semaphore] { return REAL(sem_trywait)(semaphore); });
 }
 
 SHIM_EXPORT int sem_post(sem_t* semaphore) noexcept {
     const int result = REAL(sem_post)(semaphore);
     if (!active()) return result;
     wake(semaphore, 1);
-    charge(page().charges.sync);
+    charge_lock();
     return result;
 }
 
@@ -109,7 +109,7 @@ SHIM_EXPORT int pthread_barrier_destroy(pthread_barrier_t* object) noexcept {
 SHIM_EXPORT int pthread_barrier_wait(pthread_barrier_t* object) noexcept {
     if (!active()) return REAL(pthread_barrier_wait)(object);
     mark_call("pthread_barrier_wait");
-    charge(page().charges.sync);
+    charge_lock();
     auto* barrier = reinterpret_cast<Barrier*>(object);
     const std::uint32_t round = __atomic_load_n(&barrier->round, __ATOMIC_ACQUIRE);
     if (__atomic_add_fetch(&barrier->arrived, 1, __ATOMIC_ACQ_REL) >= barrier->needed) {

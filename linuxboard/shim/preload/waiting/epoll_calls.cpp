@@ -1,5 +1,6 @@
 // epoll: devices are registered here, everything else with the host's epoll, which is then one outside
-// descriptor more. Of devices sockets can be edge-triggered, others behave as level-triggered ones then.
+// descriptor more. Sockets and serial ports can be edge-triggered, cameras behave as level-triggered ones
+// then.
 
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
@@ -125,6 +126,10 @@ SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* even
     charge(page().charges.device);
     epoll_event wanted{};
     if (operation != EPOLL_CTL_DEL && !get_from_program(wanted, event)) return -1;
+    if (open_file(fd)->kind == OpenFile::Kind::I2c) {  // i2c-dev has no poll method
+        errno = EPERM;
+        return -1;
+    }
     if (!is_epoll(epoll_fd)) return -1;
     if (operation != EPOLL_CTL_ADD && operation != EPOLL_CTL_MOD && operation != EPOLL_CTL_DEL) {
         errno = EINVAL;
