@@ -13,6 +13,7 @@ constexpr ActionKey kMove[]{{"to", List}, {"by", List}, {"heading"}, {"over"}};
 constexpr ActionKey kPut[]{{"to", List}, {"heading"}};
 constexpr ActionKey kSet[]{{"grey"}, {"ambient"}, {"intensity"}, {"level"}, {"reflectivity"}, {"charge"}, {"ground"}};
 constexpr ActionKey kSelect[]{{"position", Integer}};
+constexpr ActionKey kSend[]{{"text"}, {"port", Integer}};
 constexpr ActionKey kRemote[]{{"key", Integer}, {"address", Integer}, {"hold"}};
 
 constexpr ActionForm kForms[]{
@@ -34,6 +35,8 @@ constexpr ActionForm kForms[]{
     {"remote", "remote ROBOT|all key 0..63 [address 0..31] [hold TIME]",
      "presses a key of an RC5 remote control", kRemote},
     {"unset", "unset ROBOT", "its ground sensors see the floor again", {}},
+    {"send", "send COMPUTER text \"TEXT\" [port N]",
+     "a UDP datagram for a program of a computer on the network: port 7701 is that of puckloop-netmanager", kSend},
 };
 
 constexpr ActionKey kWall[]{{"name"}, {"from", List}, {"to", List}, {"thickness"}, {"height"}, {"reflectivity"}};

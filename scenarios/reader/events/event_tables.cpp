@@ -21,6 +21,7 @@ using physics::Verb;
 
 constexpr double kLatestEvent = 86'400.0 * 30;  // s, as a run
 constexpr std::int64_t kMostTimes = 1'000'000;
+constexpr int kManagerPort = 7701;  // of puckloop-netmanager --control
 
 /// To the microsecond.
 cosim::Time read_time(Reader& reader, std::string_view key, double seconds) {
@@ -133,6 +134,10 @@ Action read_action(Reader& reader, const TomlValue& table, int line) {
         action.number = read_number(reader, "key", 63);
         action.address = static_cast<int>(reader.integer("address", 0, 0, 31));
         action.hold = reader.quantity("hold", Dimension::Time, 0.0);
+        break;
+    case Verb::Send:
+        action.text = reader.text("text");
+        action.number = static_cast<int>(reader.integer("port", kManagerPort, 1, 65'535));
         break;
     case Verb::Remove:
     case Verb::Lift:
