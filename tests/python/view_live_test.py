@@ -297,7 +297,8 @@ class Live(unittest.TestCase):
             '[run]\nduration = "30 s"\n[arena]\nsize = ["1 m", "1 m"]\n[network]\n[[host]]\nname = "manager"\n'
             'program = ["puckloop-netmanager", "--status", "0.2"]\n' + "".join(
                 f'[[host]]\nname = "m{i}"\naddress = "10.0.0.{i}"\n'
-                f'program = ["python3", "-B", "{sender}", "{i}", "{3 - i}"]\n' for i in (1, 2)))
+                f'program = ["python3", "-B", "{sender}", "{i}", "{23 - i}"]\n' for i in (11, 12)) +
+            '[[robot]]\nposition = ["0 m", "0 m"]\n[robot.pic]\nfirmware = "own"\n')
         address = self.start(30, scenario)
         browser = Browser()
         self.addCleanup(browser.close)
@@ -309,14 +310,15 @@ class Live(unittest.TestCase):
         self.assertEqual(browser.value("[...document.querySelectorAll('#network-part td')].map((one) => one.textContent)"),
                          ["", "1", "1", ""])
         self.assertEqual(browser.value("document.querySelectorAll('#network-part td.failed').length"), 0)
+        browser.wait("parseFloat(document.querySelector('#network-part li').textContent) > 1.2")
         self.assertRegex(browser.value("document.querySelector('#network-part li').textContent"),
-                         "^1\\.9[0-9]+ [12] to [12]: sent at 1\\.9")
+                         "^1\\.[0-9]+ 1[12] to 1[12]: sent at 1\\.")
         browser.value("""(() => { const field = document.querySelector('#network-part [name=loss]'); field.value = '1';
             field.dispatchEvent(new Event('change')); })()""")
         browser.value("window.puckloopView.drive({ do: 'step', ms: 1000 })")
         browser.wait("Number(document.body.dataset.simulated) === 3")
         browser.wait("document.querySelectorAll('#network-part td.failed').length === 2")
-        browser.wait("document.querySelector('#network-part li.failed').textContent.includes('lost sent at 2.9')")
+        browser.wait("document.querySelector('#network-part li.failed').textContent.includes('lost sent at 2.')")
         self.assertEqual(browser.value("document.querySelector('#network-part [name=loss]').value"), "1")
         # At an earlier time what was known then.
         browser.value("window.puckloopView.jump(1.0, -1)")

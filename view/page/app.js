@@ -414,9 +414,10 @@ class App {
       beams: element('beams').checked, persist: Math.max(0.1 * speed, 0.02), selected: this.robot });
     this.timeline.draw(colours);
     // Positions come each 100 ms, bytes at once.
-    this.terminal.draw(this.live && this.live.atEdge ? Math.max(run.now, this.live.state.time_s) : run.now);
+    const known = this.live && this.live.atEdge ? Math.max(run.now, this.live.state.time_s) : run.now;
+    this.terminal.draw(known);
     this.cameras.draw(run.now);
-    this.network.draw(run.now);
+    this.network.draw(known);
     this.panel.draw(colours, Math.max(0, this.timeline.from), Math.min(this.timeline.to, run.duration));
     if (!(time - this.recentAt < recentMilliseconds)) {
       this.recentAt = time;
