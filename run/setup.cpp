@@ -300,6 +300,7 @@ RunSetup set_up(const RunRequest& request) {
     add_network(setup, request);
     add_can_buses(setup);
     add_ircom(setup);
+    add_messages(setup);
     name_linked_ports(setup);
     assign_faults(setup);
     plan_states(setup, request);

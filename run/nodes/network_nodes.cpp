@@ -1,5 +1,6 @@
 #include "run/nodes/network_nodes.h"
 
+#include "cosim/trace/trace_hash.h"
 #include "physics/world/pose_signals.h"
 #include "run/nodes/linux_nodes.h"
 #include "run/nodes/plan_kit.h"
@@ -156,14 +157,19 @@ void add_network(RunSetup& setup, const RunRequest& request) {
         add_free(setup, kNetwork, wifi_spec(setup, computers));
     else
         add_free(setup, kNetwork, network_spec(*scenario.network, computers));
-    // Neither is in trace.csv: what was sent is in the world's log, and arrives as a packet.
-    cosim::LinkSpec messages{"network.messages", {kNetwork, "messages"}, {"world", "messages"}};
-    messages.record_from_b = false;
-    setup.links.push_back(messages);
     if (!has_moving_radios(scenario)) return;
     cosim::LinkSpec places{"network.world", {kNetwork, "world"}, {"world", kNetwork}};
     places.record_from_b = false;
     setup.links.push_back(places);
+}
+
+void add_messages(RunSetup& setup) {
+    if (scenarios::computers_of(setup.scenario).empty()) return;
+    // Not in trace.csv: what was sent is in the world's log, and arrives as a packet.
+    const std::string port(cosim::kHandsPort);
+    cosim::LinkSpec messages{"network.messages", {kNetwork, port}, {"world", port}};
+    messages.record_from_b = false;
+    setup.links.push_back(messages);
 }
 
 }  // namespace puckloop::tools
