@@ -1,11 +1,13 @@
 // Walls between radios, and the mesh: ways, hops, changes of ways, packets for all.
 
 #include "base/error.h"
+#include "base/random.h"
 #include "tests/network/wifi_kit.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -102,6 +104,35 @@ TEST_CASE("whatever the line crosses takes its loss", "[wifi]") {
     CHECK(two.loss_between({-1, 0}, {1, 0}) == 10);
     CHECK(two.loss_between({1, 0}, {-1, 0}) == 10);
     CHECK(wifi::Obstacles({}, 0, 0).loss_between({-1, 0}, {1, 0}) == 0);
+}
+
+TEST_CASE("what a line crosses is what points of it are in (seeded)", "[wifi]") {
+    RandomStream random(42, "obstacles");
+    const auto drawn = [&](double low, double high) { return low + (high - low) * random.uniform(); };
+    int crossed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Obstacle one = box(drawn(-2, 2), drawn(-2, 2), drawn(0.1, 2), drawn(0.1, 2), drawn(-4, 4));
+        one.box = i % 3 != 0;
+        const Position a{drawn(-3, 3), drawn(-3, 3)}, b{drawn(-3, 3), drawn(-3, 3)};
+        double deepest = -1e9;  // m inside
+        for (int k = 0; k <= 4000; ++k) {
+            const double x = a[0] + (b[0] - a[0]) * k / 4000 - one.x,
+                         y = a[1] + (b[1] - a[1]) * k / 4000 - one.y;
+            const double along = std::cos(one.heading) * x + std::sin(one.heading) * y,
+                         beside = std::cos(one.heading) * y - std::sin(one.heading) * x;
+            const double inside =
+                one.box ? std::min(one.length / 2 - std::abs(along), one.width / 2 - std::abs(beside))
+                        : one.length / 2 - std::hypot(x, y);
+            deepest = std::max(deepest, inside);
+        }
+        const bool crosses = wifi::Obstacles({one}, 0, 0).loss_between(a, b) > 0;
+        INFO(i << ": " << deepest << " m inside");
+        if (deepest > 0) CHECK(crosses);
+        if (deepest < -0.005) CHECK_FALSE(crosses);  // points are up to 2 mm apart
+        crossed += crosses ? 1 : 0;
+    }
+    CHECK(crossed > 300);
+    CHECK(crossed < 1700);
 }
 
 TEST_CASE("walls follow what the world reports of them", "[wifi]") {

@@ -1,5 +1,6 @@
 // What the network manager makes of robots' lines, and whom a message reaches.
 
+#include "base/random.h"
 #include "linuxboard/netmanager/traffic.h"
 
 #include <catch2/catch.hpp>
@@ -94,4 +95,35 @@ TEST_CASE("the status is JSON with links, rates and the last messages", "[netman
     CHECK(open["range_m"].is_null());
     CHECK(open["robots"] == nlohmann::json::parse("[[1]]"));
     CHECK(open["links"].empty());
+}
+
+TEST_CASE("no words bring the manager down, and what is refused changes nothing (seeded)", "[netmanager]") {
+    puckloop::RandomStream random(42, "netmanager words");
+    const std::vector<std::string> pieces{"range", "hops", "delay", "loss", "show", "none", "0.5",
+                                          "1",     "7",    "9999",  "-1",   "nan",  "inf",  "1e400",
+                                          "0x1",   " ",    "\t",    "\r",   "\n",   "",     "loss 1"};
+    int taken = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        std::string words;
+        for (auto n = random.below(6); n > 0; --n)
+            words += pieces[random.below(pieces.size())] + (random.below(3) != 0 ? " " : "");
+        if (random.below(10) == 0 && !words.empty())
+            words[random.below(words.size())] = static_cast<char>(random.below(256));
+        Settings settings, before;
+        const std::string wrong = apply_words(words, settings);
+        taken += wrong.empty() ? 1 : 0;
+        CHECK(wrong.size() < 200);
+        if (wrong.empty()) {
+            CHECK(settings.limits.hops >= 1);
+            CHECK((settings.loss >= 0 && settings.loss <= 1));
+            continue;
+        }
+        CHECK(settings.limits.hops == before.limits.hops);
+        CHECK(settings.limits.range == before.limits.range);
+        CHECK(settings.hop_delay == before.hop_delay);
+        CHECK(settings.loss == before.loss);
+        CHECK(settings.loss_of_link.empty());
+    }
+    CHECK(taken > 500);
+    CHECK(taken < 15'000);
 }

@@ -282,3 +282,33 @@ TEST_CASE("whoever believes the wrong computer does so for a while", "[network]"
     CHECK(right > 75);
     CHECK(right < 125);
 }
+
+TEST_CASE("faults of connections take any octets for packets (seeded)", "[network]") {
+    RandomStream random(42, "segments");
+    for (const char* kind : {"connection_reset", "address_clash"}) {
+        FaultSpec fault = fault_of(kind);
+        network::NetworkNode node(with(fault));
+        std::vector<cosim::Message> sent, outbox;
+        for (int i = 0; i < 4000; ++i) {
+            protocols::TcpSegment one = segment(static_cast<std::uint32_t>(random.next()), "", 0,
+                                                static_cast<std::uint32_t>(random.next()));
+            one.flags = static_cast<protocols::Octet>(random.below(64));
+            one.data.resize(random.below(3) == 0 ? random.below(1400) : 0);
+            one.from_port = static_cast<std::uint16_t>(random.below(4));
+            one.to_port = static_cast<std::uint16_t>(random.below(4));
+            const std::size_t from = random.below(3), to = random.below(3);
+            cosim::Message message = tcp(i * kMillisecond / 10, from, to, one);
+            if (random.below(4) == 0) {  // damaged beyond its header
+                auto& octets = std::get<cosim::Packet>(message.payload).octets;
+                std::vector<std::uint8_t> bytes(octets.view().begin(), octets.view().end());
+                bytes.resize(protocols::kIpHeader + random.below(bytes.size() - protocols::kIpHeader + 1));
+                octets = cosim::Octets(bytes);
+            }
+            sent.push_back(message);
+        }
+        node.advance(2 * cosim::kSecond, sent, outbox);
+        // Each becomes three at most: what is kept of it, and a reset to either end.
+        CHECK(outbox.size() <= 3 * sent.size());
+        CHECK(nlohmann::json::parse(node.finish())["faults"][0]["fired"] > 10);
+    }
+}
