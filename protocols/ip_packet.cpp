@@ -157,6 +157,20 @@ std::optional<UdpDatagram> decode_udp(const IpPacket& packet) {
                        text_of(octets.subspan(kUdpHeader, length - kUdpHeader))};
 }
 
+TcpSegment reset_for(const TcpSegment& segment) {
+    TcpSegment reset;
+    reset.from_port = segment.to_port;
+    reset.to_port = segment.from_port;
+    reset.flags = kRst;
+    if ((segment.flags & kAck) != 0) {
+        reset.sequence = segment.acknowledged;
+    } else {
+        reset.flags |= kAck;
+        reset.acknowledged = segment.sequence + segment.length();
+    }
+    return reset;
+}
+
 std::vector<Octet> encode_tcp(const TcpSegment& segment, IpAddress from, IpAddress to) {
     std::vector<Octet> out;
     put(out, segment.from_port, 2);

@@ -66,6 +66,8 @@ struct TcpSegment {
         return static_cast<std::uint32_t>(data.size()) + ((flags & kSyn) != 0) + ((flags & kFin) != 0);
     }
 };
+/// What answers a segment that belongs to no connection (RFC 9293, 3.10.7.1). Not for one that is a reset.
+TcpSegment reset_for(const TcpSegment& segment);
 std::vector<Octet> encode_tcp(const TcpSegment& segment, IpAddress from, IpAddress to);
 std::optional<TcpSegment> decode_tcp(const IpPacket& packet);
 

@@ -26,6 +26,7 @@ struct TeamSpec {
     std::filesystem::path firmware;                          ///< of the main boards, at selector 10
     std::vector<std::string> forwarder{"puckloop-forward"};  ///< words; "--server manager:7700" follows
     std::string standard = "g";                              ///< of the radio
+    double rate = 0;                                         ///< Mbit/s of its frames to one; 0: by power
     int robots = 2;
     double seconds = 30;
     std::uint64_t seed = 1;

@@ -56,9 +56,9 @@ fs::path write_team(const TeamSpec& spec) {
     std::string text =
         fmt::format("[run]\nduration = \"{} s\"\nseed = {}\n[arena]\nsize = [\"{} m\", \"{} m\"]\n"
                     "[network]\nmode = \"wifi\"\naccess_point = [\"3 m\", \"0 m\"]\n"
-                    "[network.wifi]\nstandard = \"{}\"\n"
+                    "[network.wifi]\nstandard = \"{}\"\nrate = \"{:g} Mbit/s\"\n"
                     "[[host]]\nname = \"{}\"\nprogram = [\"puckloop-netmanager\"]\n",
-                    spec.seconds, spec.seed, kFieldWidth, kFieldDepth, spec.standard, kManager);
+                    spec.seconds, spec.seed, kFieldWidth, kFieldDepth, spec.standard, spec.rate, kManager);
     std::vector<std::string> program = spec.forwarder;
     program.insert(program.end(), {"--server", fmt::format("{}:7700", kManager)});
     for (const StartPose& pose : draw_poses(spec))

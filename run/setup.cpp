@@ -29,6 +29,7 @@
 #include "run/plan/stats_plan.h"
 #include "run/snapshots/snapshot_plan.h"
 #include "scenarios/reader/read_scenario.h"
+#include "scenarios/tables/network_tables.h"
 
 #include <fmt/format.h>
 
@@ -186,6 +187,7 @@ void add_robot(RunSetup& setup, std::size_t index, const RunRequest& request) {
 
 /// The world, and what happens to it.
 void add_world(RunSetup& setup, const RunRequest& request) {
+    scenarios::name_computers(setup.scenario);  // one from outside among them
     physics::EventPlan& events = setup.scenario.events;
     events.live = request.realtime || request.paced;
     events.repeats = !request.realtime || programs_of(setup.scenario) == 0;
@@ -298,6 +300,7 @@ RunSetup set_up(const RunRequest& request) {
     add_network(setup, request);
     add_can_buses(setup);
     add_ircom(setup);
+    add_messages(setup);
     name_linked_ports(setup);
     assign_faults(setup);
     plan_states(setup, request);

@@ -1,5 +1,6 @@
 #include "view/answers.h"
 
+#include "view/live/network_status.h"
 #include "view/page_parts.h"
 #include "view/recording/bytes.h"
 #include "view/recording/camera_pictures.h"
@@ -141,6 +142,12 @@ std::optional<Content> Answers::get(std::string_view target) const {
     if (name == "texts") return texts(events, query);
     if (name == "serial") return serial(query);
     if (name == "picture") return picture(query);
+    if (name == "network") {
+        const auto at = parameter(query, "at");
+        const auto milliseconds = at ? number_of(*at) : std::nullopt;
+        if (!milliseconds) return std::nullopt;
+        return Content{kJson, network_status(recording_.folder(), static_cast<double>(*milliseconds) / 1e3)};
+    }
     if (name == "find") return find(events, query);
     const bool sensors = name == "sensors";
     const auto value = parameter(query, sensors ? "robot" : "from");

@@ -7,12 +7,17 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <span>
 
 namespace puckloop::cosim {
 
 namespace {
 constexpr std::string_view kHead = "puckloop trace 1\n";
 constexpr std::size_t kChunk = 16384;
+
+bool is_of_hands(const LinkSpec& link) {
+    return link.a.port == kHandsPort && link.b.port == kHandsPort;
+}
 
 template <class Archive>
 void list(Archive& archive, sha256_ctx& context) {
@@ -31,9 +36,10 @@ TraceHash::TraceHash() {
 
 void TraceHash::begin(const std::vector<LinkSpec>& links) {
     ByteWriter writer(buffer_);
+    const auto last = std::find_if(links.begin(), links.end(), is_of_hands);
     writer.text(kHead);
-    writer.u32(static_cast<std::uint32_t>(links.size()));
-    for (const LinkSpec& link : links)
+    writer.u32(static_cast<std::uint32_t>(last - links.begin()));
+    for (const LinkSpec& link : std::span(links.begin(), last))
         for (const std::string& text : {link.name, link.a.node, link.a.port, link.b.node, link.b.port})
             writer.text(text);
 }

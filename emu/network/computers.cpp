@@ -58,11 +58,21 @@ void Computers::arrange(const Passage& passage) {
     places_[passage.to].coming.emplace(std::pair(passage.arrival, arrangements_++), passage);
 }
 
+void Computers::hand_in(const cosim::Packet& packet, Time arrival) {
+    const auto read = protocols::decode_ip(packet.octets.view());
+    for (std::size_t c = 0; read && c < places_.size(); ++c)
+        if (places_[c].address == read->to)
+            arrange({0, c, c, packet.start, packet.duration, arrival, packet.octets});
+}
+
 void Computers::deliver(const Passage& sent) {
     if (faults_.empty()) return arrange(sent);
     // Only what was kept back before this one comes behind it.
     std::vector<Passage> held = faults_.take_held(sent.from, sent.to, sent.arrival);
-    for (const Passage& one : faults_.pass(sent))
+    Passage meant = sent;
+    const auto read = protocols::decode_ip(sent.octets.view());
+    meant.many = read && is_for_many(read->to);
+    for (const Passage& one : faults_.pass(meant))
         arrange(one);
     for (const Passage& one : held)
         arrange(one);

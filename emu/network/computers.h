@@ -51,6 +51,8 @@ class Computers {
     bool is_for(std::size_t computer, protocols::IpAddress to) const;
     bool is_for_many(protocols::IpAddress to) const;
 
+    /// A packet of the experiment's reaches its computer at `arrival`, whatever the network does.
+    void hand_in(const cosim::Packet& packet, cosim::Time arrival);
     /// A packet is to reach a computer, unless a fault is against it. In the order of start for each fault.
     void deliver(const Passage& sent);
     /// Hands on what arrives before `until`.

@@ -14,8 +14,12 @@ using cosim::CarriedFault;
 using cosim::Time;
 
 namespace {
-/// Two packets that arrive together come one behind the other.
-constexpr Time kBehind = cosim::kMicrosecond;
+constexpr const char* kAway = "access_point_away";
+
+/// Carried out packet by packet, each at its receiver.
+bool is_of_packets(const std::string& kind) {
+    return kind != "rate" && kind != "connection_reset" && kind != "address_clash" && kind != kAway;
+}
 
 cosim::Octets spoilt(const cosim::Octets& octets, std::size_t bits, RandomStream& random) {
     std::vector<std::uint8_t> changed(octets.view().begin(), octets.view().end());
@@ -53,6 +57,8 @@ NetworkFaults::NetworkFaults(std::vector<CarriedFault> faults, std::vector<std::
         }
         where_.push_back(std::move(where));
     }
+    clashes_.resize(carried_.size());
+    resets_.resize(carried_.size());
 }
 
 bool NetworkFaults::meant(std::size_t fault, const Passage& sent) const {
@@ -85,37 +91,97 @@ double NetworkFaults::rate(double rate, Time time, std::size_t from, std::uint64
     return rate;
 }
 
+bool NetworkFaults::is_away(Time time) const {
+    return std::any_of(carried_.begin(), carried_.end(), [time](const CarriedFault& fault) {
+        return fault.spec.kind == kAway && fault.trigger.open(time);
+    });
+}
+
+std::vector<Time> NetworkFaults::away_changes() const {
+    std::set<Time> times;
+    for (const CarriedFault& fault : carried_)
+        if (fault.spec.kind == kAway) times.insert({fault.trigger.begin(), fault.trigger.end()});
+    times.erase(cosim::kNever);
+    return {times.begin(), times.end()};
+}
+
+void NetworkFaults::missed(Time time, std::uint64_t number, const std::string& what, Time known) {
+    for (CarriedFault& fault : carried_)
+        if (fault.spec.kind == kAway && fault.trigger.open(time))
+            fault.evidence.fire({time, number, {}, what}, known);
+}
+
+/// A connection is a candidate, once its octet passes.
+void NetworkFaults::reset(std::size_t index, const Passage& sent, std::vector<Passage>& passing) {
+    CarriedFault& fault = carried_[index];
+    const auto octet = static_cast<std::uint64_t>(fault.spec.parameters.number("byte"));
+    switch (resets_[index].look(sent, meant(index, sent), octet)) {
+    case ResetConnections::Verdict::Passes:
+        return;
+    case ResetConnections::Verdict::Reaches:
+        if (!fault.trigger.fires(sent.start)) return;
+        fault.evidence.fire({sent.start, sent.number, {}, describe(sent)}, sent.arrival);
+        passing = resets_[index].reset(sent, octet);
+        return;
+    case ResetConnections::Verdict::Dead:
+        passing.clear();
+        if (const auto answer = reset_to_sender(sent)) passing.push_back(*answer);
+        return;
+    }
+}
+
+void NetworkFaults::clash(std::size_t index, const Passage& sent, std::vector<Passage>& passing) {
+    CarriedFault& fault = carried_[index];
+    const cosim::FaultParameters& given = fault.spec.parameters;
+    if (sent.many || !fault.trigger.open(sent.start) || !meant(index, sent)) return;
+    if (!clashes_[index].goes_astray(sent, given.number("share"), given.time("cache"),
+                                     fault.trigger.random()))
+        return;
+    fault.evidence.fire({sent.start, sent.number, {}, describe(sent)}, sent.arrival);
+    passing.clear();
+    if (given.text("answers") != "reset") return;
+    if (const auto answer = reset_to_sender(sent)) passing.push_back(*answer);
+}
+
 std::vector<Passage> NetworkFaults::pass(const Passage& sent) {
     std::vector<Passage> passing{sent};
     for (std::size_t f = 0; f < carried_.size() && !passing.empty(); ++f) {
-        CarriedFault& fault = carried_[f];
-        const std::string& kind = fault.spec.kind;
-        if (kind == "rate" || !meant(f, sent)) continue;
-        const bool holds = kind == "partition";
-        if (holds ? !fault.trigger.open(sent.start) : !fault.trigger.fires(sent.start)) continue;
-        fault.evidence.fire({sent.start, sent.number, {}, describe(sent)}, sent.arrival);
-        const cosim::FaultParameters& given = fault.spec.parameters;
-        RandomStream& random = fault.trigger.random();
-        if (holds || kind == "loss") {
-            passing.clear();
-        } else if (kind == "duplicate") {
-            passing.push_back(passing.back());
-            passing.back().arrival += kBehind;
-        } else if (kind == "delay") {
-            const auto jitter = static_cast<double>(given.time("jitter"));
-            const Time later = given.time("delay") + static_cast<Time>(jitter * (2 * random.uniform() - 1));
-            for (Passage& one : passing)
-                one.arrival += std::max<Time>(later, 0);
-        } else if (kind == "corrupt") {
-            for (Passage& one : passing)
-                one.octets = spoilt(one.octets, static_cast<std::size_t>(given.number("bits")), random);
-        } else {  // reorder
-            for (Passage& one : passing)
-                held_.push_back({one.arrival + given.time("delay"), one});
-            passing.clear();
-        }
+        const std::string& kind = carried_[f].spec.kind;
+        if (kind == "connection_reset")
+            reset(f, sent, passing);
+        else if (kind == "address_clash")
+            clash(f, sent, passing);
+        if (is_of_packets(kind) && meant(f, sent)) suffer(f, sent, passing);
     }
     return passing;
+}
+
+void NetworkFaults::suffer(std::size_t index, const Passage& sent, std::vector<Passage>& passing) {
+    CarriedFault& fault = carried_[index];
+    const std::string& kind = fault.spec.kind;
+    const bool holds = kind == "partition";
+    if (holds ? !fault.trigger.open(sent.start) : !fault.trigger.fires(sent.start)) return;
+    fault.evidence.fire({sent.start, sent.number, {}, describe(sent)}, sent.arrival);
+    const cosim::FaultParameters& given = fault.spec.parameters;
+    RandomStream& random = fault.trigger.random();
+    if (holds || kind == "loss") {
+        passing.clear();
+    } else if (kind == "duplicate") {
+        passing.push_back(passing.back());
+        passing.back().arrival += kBehind;
+    } else if (kind == "delay") {
+        const auto jitter = static_cast<double>(given.time("jitter"));
+        const Time later = given.time("delay") + static_cast<Time>(jitter * (2 * random.uniform() - 1));
+        for (Passage& one : passing)
+            one.arrival += std::max<Time>(later, 0);
+    } else if (kind == "corrupt") {
+        for (Passage& one : passing)
+            one.octets = spoilt(one.octets, static_cast<std::size_t>(given.number("bits")), random);
+    } else {  // reorder
+        for (Passage& one : passing)
+            held_.push_back({one.arrival + given.time("delay"), one});
+        passing.clear();
+    }
 }
 
 std::vector<Passage> NetworkFaults::take_held(std::size_t from, std::size_t to, Time arrival) {

@@ -3,8 +3,8 @@
 // parameters: cosim/faults/kinds/network_kinds.cpp.
 
 #include "base/random.h"
-#include "cosim/core/message.h"
 #include "cosim/faults/fault_json.h"
+#include "emu/network/connection_faults.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -15,16 +15,6 @@
 
 namespace puckloop::network {
 
-/// A packet on its way to one computer.
-struct Passage {
-    std::uint64_t number = 0;  ///< of the packet in the run, from 0
-    std::size_t from = 0, to = 0;
-    cosim::Time start = 0;     ///< its transmission begins
-    cosim::Time duration = 0;  ///< of that
-    cosim::Time arrival = 0;   ///< if nothing happens to it
-    cosim::Octets octets{};
-};
-
 class NetworkFaults {
   public:
     /// `names`: the computers. Throws InputError for one that is not there.
@@ -33,10 +23,18 @@ class NetworkFaults {
     bool empty() const { return carried_.empty(); }
     const std::vector<cosim::CarriedFault>& carried() const { return carried_; }
 
+    /// Whether the access point is away, and each time at which that may change, in order.
+    bool is_away(cosim::Time time) const;
+    std::vector<cosim::Time> away_changes() const;
+    /// Something was for the access point while it was away, or was kept by it when it went. `known`: when
+    /// that is certain.
+    void missed(cosim::Time time, std::uint64_t number, const std::string& what, cosim::Time known);
+
     /// What the network carries at most from `time` on, bit/s; `rate` without a fault, 0: without limit.
     double rate(double rate, cosim::Time time, std::size_t from, std::uint64_t number);
     /// What arrives of it: nothing, itself, several. Asked once for each receiver of each packet, in the
-    /// order of start. One that is to come behind the next one is kept until then (take_held).
+    /// order of start. One that is to come behind the next one is kept until then (take_held). Answers of
+    /// a fault to its sender are among them.
     std::vector<Passage> pass(const Passage& sent);
     /// Those kept back that go on behind a packet from `from` to `to` that arrives at `arrival`, or whose
     /// time is over before; each with its new arrival.
@@ -49,6 +47,10 @@ class NetworkFaults {
   private:
     bool meant(std::size_t fault, const Passage& sent) const;
     std::string describe(const Passage& sent) const;
+    // What the fault number `index` makes of a packet: `passing` arrives.
+    void suffer(std::size_t index, const Passage& sent, std::vector<Passage>& passing);
+    void reset(std::size_t index, const Passage& sent, std::vector<Passage>& passing);
+    void clash(std::size_t index, const Passage& sent, std::vector<Passage>& passing);
 
     struct Where {
         std::optional<std::size_t> from, to;
@@ -62,6 +64,8 @@ class NetworkFaults {
     std::vector<Where> where_;  ///< as carried_
     std::vector<std::string> names_;
     std::vector<Held> held_;
+    std::vector<ClashedAddress> clashes_;   ///< as carried_
+    std::vector<ResetConnections> resets_;  ///< as carried_
 };
 
 }  // namespace puckloop::network

@@ -23,7 +23,9 @@ NetworkNode::NetworkNode(const NetworkSpec& spec)
     : spec_(spec),
       computers_(spec.name, spec.prefix, spec.stations, spec.faults),
       ports_(computers_.ports()),
-      waiting_(ports_.size()) {}
+      waiting_(ports_.size()) {
+    ports_.push_back({"messages", cosim::PortKind::Network});
+}
 
 void NetworkNode::take(std::size_t from, const cosim::Packet& packet, Time now) {
     ComputerCounts& counts = computers_.counts(from);
@@ -56,14 +58,20 @@ void NetworkNode::take(std::size_t from, const cosim::Packet& packet, Time now) 
 
 void NetworkNode::advance(Time until, std::span<const cosim::Message> inbox,
                           std::vector<cosim::Message>& outbox) {
-    for (const cosim::Message& message : inbox)
-        if (const auto* packet = std::get_if<cosim::Packet>(&message.payload))
-            if (message.port < computers_.size()) take(message.port, *packet, message.time);
+    for (const cosim::Message& message : inbox) {
+        const auto* packet = std::get_if<cosim::Packet>(&message.payload);
+        if (packet == nullptr) continue;
+        if (message.port < computers_.size())
+            take(message.port, *packet, message.time);
+        else
+            computers_.hand_in(*packet, message.time + lookahead(message.port));
+    }
     computers_.hand_over(until, outbox);
     granted_ = until;
 }
 
 Time NetworkNode::earliest_output(cosim::PortIndex port) const {
+    if (port >= computers_.size()) return cosim::kNever;
     return std::max(granted_, computers_.next(port));
 }
 
@@ -74,7 +82,7 @@ Time NetworkNode::lookahead(cosim::PortIndex /*port*/) const {
 std::string NetworkNode::finish() {
     using nlohmann::ordered_json;
     ordered_json stations = ordered_json::object();
-    for (std::size_t p = 0; p < ports_.size(); ++p)
+    for (std::size_t p = 0; p < computers_.size(); ++p)
         stations[ports_[p].name] = computers_.report(p);
     ordered_json report{{"stations", std::move(stations)}, {"busy_s", cosim::to_seconds(busy_)}};
     const NetworkFaults& faults = computers_.faults();

@@ -1,7 +1,8 @@
 #pragma once
-// The network between computers as a node: one port for each, to which its packets go
-// (linuxboard/shim/network is what makes and takes them). One channel that all share carries one packet at a
-// time, in the order in which they were handed over; each arrives a fixed time after its last octet was sent.
+// The network between computers as a node: one port for each, to which its packets go, and "messages" for
+// what an event of the scenario sends (linuxboard/shim/network is what makes and takes them). One channel
+// that all share carries one packet at a time, in the order in which they were handed over; each arrives a
+// fixed time after its last octet was sent.
 //
 // Deviations: 1. No frames, contention or range of a radio (those: emu/wifi): `mode` perfect or fixed. 2. A
 // broadcast takes the channel once and reaches everybody; so does a multicast, and the computers' kernels

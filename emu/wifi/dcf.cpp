@@ -81,6 +81,16 @@ const Rate& Dcf::rate_for(std::size_t station, std::size_t hop_to) const {
     return *best;
 }
 
+bool Dcf::is_neighbour(std::size_t a, std::size_t b) const {
+    return std::min(medium_.received_dbm(a, b), medium_.received_dbm(b, a)) >=
+           phy_.slowest().sensitivity_dbm + kMargin;
+}
+
+Time Dcf::time_of(std::size_t octets, const Rate& rate) const {
+    return phy_.difs() + phy_.air_time(kFrameOctets + octets, rate) + phy_.sifs() +
+           phy_.air_time(kAckOctets, phy_.ack_rate(rate));
+}
+
 void Dcf::draw(Station& station) {
     station.count =
         static_cast<std::int64_t>(station.backoff.below(static_cast<std::uint64_t>(station.window) + 1));
@@ -147,6 +157,23 @@ bool Dcf::submit(std::size_t number, Frame frame, Time now) {
     if (!is_free && station.count == 0) draw(station);
     plan(station, now);
     return true;
+}
+
+std::vector<Frame> Dcf::set_away(std::size_t number, bool away) {
+    Station& station = stations_[number];
+    station.away = away;
+    std::vector<Frame> lost;
+    if (!away) return lost;
+    const std::size_t kept = station.sends ? 1 : 0;
+    lost.assign(station.queue.begin() + static_cast<std::ptrdiff_t>(kept), station.queue.end());
+    station.queue.resize(kept);
+    station.ack_due = kNever;
+    if (kept == 0) {
+        station.plan = kNever;
+        station.attempts = 0;
+        station.window = phy_.first_window();
+    }
+    return lost;
 }
 
 void Dcf::send(std::size_t number, Time now) {
@@ -224,6 +251,9 @@ void Dcf::meant_for(const Transmission& sent, const Frame* frame, std::size_t nu
     case Fate::Sending:
         ++station.counts.sending;
         return;
+    case Fate::Away:
+        ++station.counts.away;
+        return;
     }
     if (sent.acknowledges) return;
     ++station.counts.read;
@@ -254,7 +284,7 @@ void Dcf::ended(std::size_t on_air) {
     bool acknowledged = false;
     for (std::size_t s = 0; s < stations_.size(); ++s) {
         if (s == sent.station) continue;
-        const Fate fate = medium_.judge(sent, s, stations_[s].noise);
+        const Fate fate = stations_[s].away ? Fate::Away : medium_.judge(sent, s, stations_[s].noise);
         heard(sent, s, fate);
         if (!to_all && sent.hop_to != s) continue;
         if (sent.acknowledges) acknowledged = fate == Fate::Read;
@@ -295,7 +325,7 @@ void Dcf::succeeded(std::size_t number, Time now) {
 void Dcf::failed(std::size_t number, Time now) {
     Station& station = stations_[number];
     station.give_up = kNever;
-    if (station.attempts >= settings_.attempts) {
+    if (station.away || station.attempts >= settings_.attempts) {
         ++station.counts.dropped;
         user_.dropped(number, station.queue.front(), now);
         station.queue.pop_front();

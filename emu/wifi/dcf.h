@@ -5,7 +5,8 @@
 // frame to one station is acknowledged after a SIFS, or sent again after a count from twice the window.
 //
 // Deviations: 1. No RTS and CTS, fragments, power saving, beacons or joining. 2. A rate is chosen by the
-// power that arrives, not by what was lost. 3. All clocks agree, and light takes no time.
+// power that arrives, not by what was lost. 3. All clocks agree, and light takes no time. 4. Who sends to a
+// station that is away goes on as with one out of range: nobody leaves a network or joins another one.
 
 #include "emu/wifi/medium.h"
 
@@ -28,6 +29,7 @@ struct DcfCounts {
     std::uint64_t read = 0;                                          ///< frames meant for it
     std::uint64_t twice = 0;                                         ///< of them, read before
     std::uint64_t weak = 0, noise = 0, collisions = 0, sending = 0;  ///< meant for it and not read
+    std::uint64_t away = 0;                                          ///< likewise: it was away
     cosim::Time air = 0;                                             ///< its frames took
 };
 
@@ -60,8 +62,18 @@ class Dcf {
     const Bursts& bursts() const { return bursts_; }
     const DcfCounts& counts(std::size_t station) const { return stations_[station].counts; }
 
+    /// Of a frame to that station, as the power is now.
+    const Rate& rate_for(std::size_t station, std::size_t hop_to) const;
+    /// So much power arrives, each way, that a frame with the slowest rate is hardly ever lost in noise.
+    bool is_neighbour(std::size_t a, std::size_t b) const;
+    /// Of a packet of so many octets to one station, from the gap before it to its acknowledgement.
+    cosim::Time time_of(std::size_t octets, const Rate& rate) const;
+
     /// A frame for the station's queue; false: it is full.
     bool submit(std::size_t station, Frame frame, cosim::Time now);
+    /// A station that is away reads nothing and sends nothing; what it kept, and that is returned, is lost.
+    /// A frame that it sends already goes to its end.
+    std::vector<Frame> set_away(std::size_t station, bool away);
     /// When something happens next; kNever.
     cosim::Time next() const;
     /// Does it.
@@ -78,6 +90,7 @@ class Dcf {
         cosim::Time busy_until = 0;
         bool unread = false;  ///< the last frame on the channel
         bool sends = false;   ///< the first of the queue is on air or waits for its acknowledgement
+        bool away = false;
         cosim::Time plan = cosim::kNever;     ///< it sends then
         cosim::Time give_up = cosim::kNever;  ///< no acknowledgement has come by then
         cosim::Time ack_due = cosim::kNever;  ///< it sends one then
@@ -93,7 +106,6 @@ class Dcf {
             : backoff(backoff_stream), noise(noise_stream) {}
     };
 
-    const Rate& rate_for(std::size_t station, std::size_t hop_to) const;
     void draw(Station& station);
     void plan(Station& station, cosim::Time now);
     void rebase(Station& station, cosim::Time at_least);

@@ -31,7 +31,7 @@ double loss(double margin, std::size_t octets) {
 }  // namespace
 
 const char* name_of(Fate fate) {
-    constexpr std::array kNames{"read", "weak", "noise", "collision", "sending"};
+    constexpr std::array kNames{"read", "weak", "noise", "collision", "sending", "away"};
     return kNames[static_cast<std::size_t>(fate)];
 }
 
@@ -70,7 +70,7 @@ double Medium::received_dbm(std::size_t from, std::size_t to) const {
         std::hypot(positions_[from][0] - positions_[to][0], positions_[from][1] - positions_[to][1]);
     return settings_.power - settings_.loss_at_1m -
            10.0 * settings_.exponent * std::log10(std::max(distance, kNearest)) - shadows_[from][to] -
-           body_loss(from, to);
+           body_loss(from, to) - obstacles_.loss_between(positions_[from], positions_[to]);
 }
 
 const Transmission& Medium::add(Transmission transmission) {

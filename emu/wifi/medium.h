@@ -5,8 +5,8 @@
 //
 // Deviations:
 // 1. Power falls with one exponent of distance; what differs from that is drawn once for each pair of
-//    stations and stays, however they move. No walls and fading. Bodies are the stations' that are robots,
-//    discs of 7.4 cm; one is in the way where the line between two stations' centres crosses it.
+//    stations and stays, however they move. No fading. Bodies are the stations' that are robots, discs of
+//    7.4 cm; one is in the way where the line between two stations' centres crosses it. Walls: obstacles.h.
 // 2. A frame of 1000 octets is lost with 10 % at the sensitivity, a tenth of it with each dB more.
 // 3. Other frames add to the noise, over the whole frame and each in full, whenever they overlap it; a
 //    receiver locks on to no weaker frame first.
@@ -14,16 +14,16 @@
 
 #include "base/random.h"
 #include "cosim/core/octets.h"
+#include "emu/wifi/obstacles.h"
 #include "emu/wifi/phy.h"
 
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace puckloop::wifi {
-
-using Position = std::array<double, 2>;  ///< metres
 
 inline constexpr std::size_t kEveryStation = ~std::size_t{0};
 /// In place of a station: a burst of noise from outside.
@@ -34,6 +34,8 @@ struct Frame {
     std::uint64_t number = 0;  ///< of the packet in the run; once more with each station that passes it on
     std::size_t from = 0;      ///< computer that it is from
     std::size_t hop_to = 0;    ///< station, or kEveryStation
+    std::size_t to = 0;        ///< in a mesh: station that it is for, or kEveryStation
+    std::int64_t hops = 0;     ///< in a mesh: that it has gone
     cosim::Octets octets{};
 };
 
@@ -53,7 +55,7 @@ struct Transmission {
 };
 
 /// What became of a frame at a station.
-enum class Fate : std::uint8_t { Read, Weak, Noise, Collision, Sending };
+enum class Fate : std::uint8_t { Read, Weak, Noise, Collision, Sending, Away };
 const char* name_of(Fate fate);
 
 class Medium {
@@ -63,6 +65,10 @@ class Medium {
            std::uint64_t seed);
 
     void move(std::size_t station, const Position& to) { positions_[station] = to; }
+    const Position& position(std::size_t station) const { return positions_[station]; }
+    /// What stands between stations; at first nothing does.
+    void set_obstacles(Obstacles obstacles) { obstacles_ = std::move(obstacles); }
+    Obstacles& obstacles() { return obstacles_; }
     /// The station is on a robot, whose body is in the way of others.
     void embody(std::size_t station) { bodies_.push_back(station); }
     /// What a station receives of another one, in dBm.
@@ -82,6 +88,7 @@ class Medium {
 
     std::vector<Position> positions_;
     std::vector<std::size_t> bodies_;
+    Obstacles obstacles_{{}, 0, 0.0};
     std::vector<std::vector<double>> shadows_;  ///< dB, of each pair
     std::vector<Transmission> on_air_;          ///< in the order in which they began
 };

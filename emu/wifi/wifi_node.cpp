@@ -59,17 +59,10 @@ std::vector<protocols::MacAddress> macs_of(const WifiSpec& spec) {
 }
 
 nlohmann::ordered_json to_json(const DcfCounts& counts) {
-    return {{"frames", counts.frames},
-            {"again", counts.again},
-            {"acks", counts.acks},
-            {"dropped", counts.dropped},
-            {"read", counts.read},
-            {"read_twice", counts.twice},
-            {"weak", counts.weak},
-            {"noise", counts.noise},
-            {"collisions", counts.collisions},
-            {"sending", counts.sending},
-            {"air_s", cosim::to_seconds(counts.air)}};
+    return {{"frames", counts.frames},   {"again", counts.again}, {"acks", counts.acks},
+            {"dropped", counts.dropped}, {"read", counts.read},   {"read_twice", counts.twice},
+            {"weak", counts.weak},       {"noise", counts.noise}, {"collisions", counts.collisions},
+            {"sending", counts.sending}, {"away", counts.away},   {"air_s", cosim::to_seconds(counts.air)}};
 }
 
 }  // namespace
@@ -79,8 +72,7 @@ WifiNode::WifiNode(const WifiSpec& spec)
       computers_(spec.name, spec.prefix, computers_of(spec), spec.faults),
       ports_(computers_.ports()),
       names_(station_names(spec)),
-      positions_(station_positions(spec)),
-      dcf_(spec.settings, names_, positions_, spec.queue, spec.seed, *this),
+      dcf_(spec.settings, names_, station_positions(spec), spec.queue, spec.seed, *this),
       free_(spec.stations.size()) {
     for (std::size_t c = 0; c < spec.stations.size(); ++c) {
         const bool wired = spec.stations[c].wired;
@@ -94,7 +86,14 @@ WifiNode::WifiNode(const WifiSpec& spec)
         if (spec.stations[c].pose >= 0) dcf_.medium().embody(station_of_[c]);
     }
     if (spec.access_point) computer_of_.push_back(kNobody);
+    dcf_.medium().set_obstacles({spec.obstacles, spec.first_shape, spec.settings.thing_loss});
+    if (spec.settings.mesh) begin_mesh();
+    away_changes_ = computers_.faults().away_changes();
+    if (!away_changes_.empty() && !spec.access_point)
+        throw InputError("", "network " + spec.name, "there is no access point that could be away",
+                         "access_point in [network]");
     ports_.push_back({"world", cosim::PortKind::Signals});
+    ports_.push_back({"messages", cosim::PortKind::Network});
     if (!spec_.pcapng.empty())
         capture_.emplace(spec_.pcapng, spec_.settings, macs_of(spec_),
                          spec_.access_point ? names_.size() - 1 : kEveryStation);
@@ -106,6 +105,7 @@ WifiNode::WifiNode(const WifiSpec& spec)
 
 WifiNode::~WifiNode() {
     if (csv_ != nullptr) std::fclose(csv_);
+    if (mesh_ && mesh_->csv != nullptr) std::fclose(mesh_->csv);
 }
 
 /// Everything before `until`.
@@ -113,7 +113,16 @@ void WifiNode::run(Time until) {
     for (;;) {
         const Time wait = waiting_.empty() ? kNever : waiting_.begin()->first.first;
         const Time air = dcf_.next();
-        if (std::min(wait, air) >= until) return;
+        const Time away = next_away_ < away_changes_.size() ? away_changes_[next_away_] : kNever;
+        const Time ways = mesh_ ? mesh_->next_update : kNever;
+        if (std::min({wait, air, away, ways}) >= until) return;
+        if (std::min(away, ways) <= std::min(wait, air)) {
+            if (away <= ways)
+                change_away(away);
+            else
+                find_ways(ways);
+            continue;
+        }
         // Who gets a packet at the time at which another one sends does not hear it yet.
         if (wait <= air) {
             const Waiting one = std::move(waiting_.begin()->second);
@@ -130,7 +139,10 @@ void WifiNode::advance(Time until, std::span<const cosim::Message> inbox,
     for (const cosim::Message& message : inbox) {
         run(message.time);
         if (const auto* packet = std::get_if<cosim::Packet>(&message.payload)) {
-            if (message.port < computers_.size()) take(message.port, *packet, message.time);
+            if (message.port < computers_.size())
+                take(message.port, *packet, message.time);
+            else
+                computers_.hand_in(*packet, message.time + lookahead(0));
         } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
             place(*signal);
         }
@@ -141,17 +153,35 @@ void WifiNode::advance(Time until, std::span<const cosim::Message> inbox,
 }
 
 void WifiNode::place(const cosim::Signal& signal) {
+    if (dcf_.medium().obstacles().take(static_cast<int>(signal.id), signal.value)) return;
     for (std::size_t c = 0; c < spec_.stations.size(); ++c) {
         const int axis = static_cast<int>(signal.id) - spec_.stations[c].pose;
         if (spec_.stations[c].pose < 0 || axis < 0 || axis > 1 || station_of_[c] == kNobody) continue;
-        Position& at = positions_[station_of_[c]];
+        Position at = dcf_.medium().position(station_of_[c]);
         at[static_cast<std::size_t>(axis)] = signal.value;
         dcf_.medium().move(station_of_[c], at);
     }
 }
 
+void WifiNode::change_away(Time now) {
+    ++next_away_;
+    const bool away = computers_.faults().is_away(now);
+    if (away == away_) return;
+    away_ = away;
+    for (const Frame& frame : dcf_.set_away(computer_of_.size() - 1, away))
+        missed(frame, now);
+}
+
+void WifiNode::missed(const Frame& frame, Time now) {
+    computers_.faults().missed(now, frame.number,
+                               fmt::format("a packet of {} in the access point", computers_.name(frame.from)),
+                               now);
+}
+
 void WifiNode::submit(std::size_t station, Frame frame, Time now) {
     const std::size_t from = frame.from;
+    if (away_ && is_access_point(station)) return missed(frame, now);
+    if (mesh_) return mesh_submit(station, std::move(frame), now);
     if (!dcf_.submit(station, std::move(frame), now) && computer_of_[station] == from)
         ++computers_.counts(from).queue_full;
 }
@@ -175,7 +205,7 @@ void WifiNode::take(std::size_t from, const cosim::Packet& packet, Time now) {
         ++counts.nobody;
         return;
     }
-    Frame frame{number, from, 0, packet.octets};
+    Frame frame{.number = number, .from = from, .octets = packet.octets};
     // A capped computer hands its packets on one behind the other.
     Time ready = std::max(now, free_[from]);
     if (const double cap = computers_.faults().rate(0.0, ready, from, number); cap != 0.0) {
@@ -188,7 +218,7 @@ void WifiNode::take(std::size_t from, const cosim::Packet& packet, Time now) {
     if (spec_.access_point)
         frame.hop_to = computer_of_.size() - 1;
     else
-        frame.hop_to = computers_.is_for_many(read->to) ? kEveryStation : station_of_[to];
+        frame.to = frame.hop_to = computers_.is_for_many(read->to) ? kEveryStation : station_of_[to];
     if (ready > now)
         waiting_.emplace(std::pair(ready, waits_++), Waiting{station, std::move(frame)});
     else
@@ -205,6 +235,10 @@ void WifiNode::pass_on(const Frame& frame, Time now, const Transmission* last) {
     for (std::size_t c = 0; c < computers_.size(); ++c) {
         if (c == frame.from || !computers_.is_for(c, read->to)) continue;
         if (station_of_[c] == kNobody) {
+            if (away_) {
+                missed(frame, now);
+                continue;
+            }
             deliver(frame, c, last != nullptr ? last->start : now, last != nullptr ? last->end : now);
         } else {
             by_radio = true;
@@ -234,7 +268,8 @@ void WifiNode::began(const Transmission& sent, const Frame* frame) {
 }
 
 void WifiNode::received(std::size_t station, const Frame& frame, const Transmission& last) {
-    if (computer_of_[station] == kNobody) return pass_on(frame, last.end, &last);
+    if (is_access_point(station)) return pass_on(frame, last.end, &last);
+    if (mesh_) return mesh_received(station, frame, last);
     if (computer_of_[station] == frame.from) return;  // its own broadcast, from the access point
     deliver(frame, computer_of_[station], last.start, last.end);
 }
@@ -250,6 +285,9 @@ void WifiNode::became(const Transmission& sent, std::size_t station, Fate fate) 
     const std::string_view kind = sent.acknowledges              ? "ack"
                                   : sent.hop_to == kEveryStation ? "to_all"
                                                                  : "data";
+    if (fate == Fate::Away)
+        computers_.faults().missed(sent.end, sent.id,
+                                   fmt::format("a frame of {} is not read", names_[sent.station]), sent.end);
     write(sent.start, sent.end, sent.station, names_[station], kind, &sent, sent.dbm[station], name_of(fate));
 }
 
@@ -298,6 +336,7 @@ std::string WifiNode::finish() {
     if (spec_.settings.bursts != 0)
         report["interference"] = {{"bursts", dcf_.bursts().count},
                                   {"air_s", cosim::to_seconds(dcf_.bursts().air)}};
+    if (mesh_) report["mesh"] = mesh_report();
     if (csv_ != nullptr) std::fflush(csv_);
     if (capture_) capture_->flush();
     const network::NetworkFaults& faults = computers_.faults();

@@ -1,11 +1,12 @@
 #pragma once
-// A wireless network between computers as a node: one port for each, to which its packets go, and "world",
-// where positions come in (physics/world/pose_signals.h). With an access point all stations send to it, and
-// it passes on; computers by wire are behind it. Without one each station sends to the other (ad-hoc), as far
-// as it reaches.
+// A wireless network between computers as a node: one port for each, to which its packets go, "world", where
+// positions come in (physics/world/pose_signals.h), and "messages" for what an event of the scenario sends.
+// With an access point all stations send to it, and it passes on; computers by wire are behind it. Without
+// one each station sends to the other (ad-hoc), as far as it reaches, or over others between them (a mesh).
 //
 // Deviations (with those of dcf.h, medium.h, phy.h): 1. All stations have joined from the start. 2. Who has
-// an address is known without asking (ARP). 3. Ad-hoc: one hop. 4. Wires carry everything at once.
+// an address is known without asking (ARP). 3. In a mesh a packet for all is sent once more by each station
+// that gets it, up to its hops; ways are found without frames (routes.h). 4. Wires carry everything at once.
 
 #include "base/fields/field.h"
 #include "cosim/core/node.h"
@@ -13,11 +14,15 @@
 #include "emu/network/computers.h"
 #include "emu/wifi/dcf.h"
 #include "emu/wifi/frame_capture.h"
+#include "emu/wifi/routes.h"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,8 +59,11 @@ struct WifiSpec {
     WifiSettings settings{};
     std::optional<Position> access_point{};
     std::vector<WifiStation> stations{};
+    std::vector<Obstacle> obstacles{};
+    int first_shape = 0;
     std::string csv{};
     std::string pcapng{};
+    std::string routes_csv{};
     std::vector<cosim::CarriedFault> faults{};
 
     template <class Visitor>
@@ -70,7 +78,11 @@ struct WifiSpec {
                      field("queue", &S::queue, "packets that an interface keeps").at_least(1),
                      part(&S::settings), field("access_point", &S::access_point, "where it is; none: ad-hoc"),
                      field("stations", &S::stations, "the computers").required(),
+                     field("obstacles", &S::obstacles, "walls and things in the way"),
+                     field("first_shape", &S::first_shape,
+                           "signal of the world at which shapes of things begin; 0: there are none"),
                      field("csv", &S::csv, "what became of frames; empty: none"),
+                     field("routes_csv", &S::routes_csv, "ways through a mesh; empty: none"),
                      field("pcapng", &S::pcapng, "captured frames; empty: none"), unlisted(&S::faults));
     }
 };
@@ -98,18 +110,40 @@ class WifiNode : public cosim::Node, private DcfUser {
 
   private:
     static constexpr std::size_t kNobody = ~std::size_t{0};
-    /// A frame that a station gets at a time: by wire, or behind one that `rate` holds up.
+    /// A frame that a station gets at a time: by wire, behind one that `rate` holds up, or to be passed on
+    /// in a mesh.
     struct Waiting {
         std::size_t station = 0;
         Frame frame;
+    };
+
+    struct Mesh {
+        Routes routes;
+        cosim::Time next_update = 0;
+        RandomStream jitter;
+        std::vector<std::set<std::uint64_t>> flooded{};  ///< of each station: packets for all that it had
+        std::vector<std::uint64_t> passed_on{};          ///< by each station
+        std::uint64_t changes = 0, no_way = 0;
+        std::FILE* csv = nullptr;
     };
 
     void run(cosim::Time until);
     void take(std::size_t from, const cosim::Packet& packet, cosim::Time now);
     void place(const cosim::Signal& signal);
     void submit(std::size_t station, Frame frame, cosim::Time now);
+    bool is_access_point(std::size_t station) const { return computer_of_[station] == kNobody; }
+    void change_away(cosim::Time now);
+    /// A frame was for the access point, or waited there, while it is away.
+    void missed(const Frame& frame, cosim::Time now);
     void pass_on(const Frame& frame, cosim::Time now, const Transmission* last);
     void deliver(const Frame& frame, std::size_t computer, cosim::Time start, cosim::Time end);
+    // wifi_mesh.cpp
+    void begin_mesh();
+    nlohmann::ordered_json mesh_report();
+    void find_ways(cosim::Time now);
+    void mesh_submit(std::size_t station, Frame frame, cosim::Time now);
+    void mesh_received(std::size_t station, const Frame& frame, const Transmission& last);
+    bool is_new_at(std::size_t station, std::uint64_t number);
     std::size_t computer_of(protocols::IpAddress to, std::size_t from) const;
     void began(const Transmission& sent, const Frame* frame) override;
     void received(std::size_t station, const Frame& frame, const Transmission& last) override;
@@ -124,14 +158,17 @@ class WifiNode : public cosim::Node, private DcfUser {
     std::vector<std::size_t> station_of_;   ///< of each computer; kNobody: it is wired
     std::vector<std::size_t> computer_of_;  ///< of each station; kNobody: the access point
     std::vector<std::string> names_;        ///< of stations
-    std::vector<Position> positions_;       ///< of stations
     Dcf dcf_;
     std::map<std::pair<cosim::Time, std::uint64_t>, Waiting> waiting_;
     std::vector<cosim::Time> free_;  ///< of each computer: `rate` holds up its packets until then
     std::uint64_t packets_ = 0, waits_ = 0;
+    std::vector<cosim::Time> away_changes_;  ///< when the access point goes away or comes back
+    std::size_t next_away_ = 0;              ///< of these
+    bool away_ = false;
     cosim::Time last_start_ = 0;
     cosim::Time granted_ = 0;
     bool any_wired_ = false;
+    std::optional<Mesh> mesh_;
     std::FILE* csv_ = nullptr;
     std::optional<FrameCapture> capture_;
 };

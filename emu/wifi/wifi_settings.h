@@ -1,7 +1,7 @@
 #pragma once
 // What the radio of a network is set to: keys of a scenario's [network.wifi] (docs/network.md).
 // Sources: [8] IEEE 802.11-2016, [R] T. S. Rappaport, Wireless Communications, 2nd edition, table 4.6, [E]
-// ETSI EN 300 328 (2.4 GHz band); "?": plausible only.
+// ETSI EN 300 328 (2.4 GHz band), [C] COST 231 final report, 4.7.2 (multi-wall model); "?": plausible only.
 
 #include "base/fields/field.h"
 
@@ -25,10 +25,15 @@ struct WifiSettings {
     std::int64_t shortest_window = 0;
     std::int64_t longest_window = 1023;
     double body_loss = 0.0;
+    double wall_loss = 0.0;
+    double thing_loss = 0.0;
     double bursts = 0.0;
     double burst_time = 0.002;
     double burst_power = -60.0;
     bool capture = false;
+    bool mesh = false;
+    std::int64_t mesh_hops = 8;
+    double route_every = 1.0;
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
@@ -77,12 +82,26 @@ struct WifiSettings {
                   "of each robot's body in the way between two stations, ?; 0: bodies are transparent")
                 .in("dB")
                 .within(0, 60),
+            field(
+                "wall_loss", &S::wall_loss,
+                "of each wall in the way between two stations, those of the arena too; 3.4 dB light, 6.9 dB "
+                "heavy ones at 1.8 GHz [C]")
+                .in("dB")
+                .within(0, 100),
+            field("thing_loss", &S::thing_loss, "of each box or cylinder in the way, ?")
+                .in("dB")
+                .within(0, 100),
             field("bursts", &S::bursts, "of interference, mean number, ?; 0: none").in("Hz").within(0, 10000),
             field("burst_time", &S::burst_time, "mean length of a burst, drawn (exponential), ?")
                 .in("s")
                 .within(1e-6, 10),
             field("burst_power", &S::burst_power, "of bursts at every station, ?").in("dBm").within(-120, 0),
-            field("capture", &S::capture, "frames go to wifi.pcapng, with radiotap headers"));
+            field("capture", &S::capture, "frames go to wifi.pcapng, with radiotap headers"),
+            field("mesh", &S::mesh, "without an access point: stations pass on what is for others"),
+            field("mesh_hops", &S::mesh_hops, "of a packet in a mesh, at most").within(1, 64),
+            field("route_every", &S::route_every, "a mesh's ways are found again after so long, ?")
+                .in("s")
+                .within(0.01, 3600));
     }
 };
 static_assert(lists_all_fields<WifiSettings>);

@@ -20,15 +20,22 @@ namespace {
 using namespace puckloop::netmanager;
 
 constexpr char kUsage[] =
-    "usage: puckloop-netmanager [--port N] [--range M] [--hops N] [--hop-delay S] [--robot "
-    "ADDRESS=NUMBER]...\n"
-    "                           [--log FILE]\n"
+    "usage: puckloop-netmanager [--port N] [--control N] [--range M] [--hops N] [--hop-delay S]\n"
+    "                           [--loss P] [--seed N] [--robot ADDRESS=NUMBER]... [--log FILE]\n"
+    "                           [--status S]\n"
     "  --port N           to listen at (7700)\n"
     "  --range M          largest distance of one hop, m, by the positions in robots' messages (no limit)\n"
     "  --hops N           most hops of a message (1)\n"
     "  --hop-delay S      a message is passed on so many seconds later for each hop (0)\n"
+    "  --loss P           chance that a message is lost on its way to one robot (0)\n"
+    "  --seed N           of what is lost (1)\n"
+    "  --control N        UDP port for changes of these while it runs, one for each datagram (7701; 0: "
+    "none):\n"
+    "                     range M, hops N, delay S, loss P [FROM TO], show; answered with the status\n"
     "  --robot A=N        the robot at address A has number N; others the last part of their address\n"
-    "  --log FILE         a table of events (CSV)\n";
+    "  --log FILE         a table of events (CSV)\n"
+    "  --status S         print settings, links and last messages after changes, at most each S seconds (0: "
+    "not)\n";
 
 constexpr int kWrongUse = 2;
 
@@ -57,29 +64,43 @@ void add_robot(Options& options, std::string_view text) {
     options.numbers[address] = number("--robot", text.substr(equals + 1), 0, kMostNumber);
 }
 
-enum { kPort = 1, kRange, kHops, kHopDelay, kRobot, kLog, kHelp };
+enum { kPort = 1, kControl, kRange, kHops, kHopDelay, kLoss, kSeed, kRobot, kLog, kStatus, kHelp };
 
 Options read_options(int count, char** words) {
-    const option known[] = {{"port", 1, nullptr, kPort},   {"range", 1, nullptr, kRange},
-                            {"hops", 1, nullptr, kHops},   {"hop-delay", 1, nullptr, kHopDelay},
-                            {"robot", 1, nullptr, kRobot}, {"log", 1, nullptr, kLog},
-                            {"help", 0, nullptr, kHelp},   {nullptr, 0, nullptr, 0}};
+    const option known[] = {
+        {"port", 1, nullptr, kPort},     {"control", 1, nullptr, kControl},    {"range", 1, nullptr, kRange},
+        {"hops", 1, nullptr, kHops},     {"hop-delay", 1, nullptr, kHopDelay}, {"loss", 1, nullptr, kLoss},
+        {"seed", 1, nullptr, kSeed},     {"robot", 1, nullptr, kRobot},        {"log", 1, nullptr, kLog},
+        {"status", 1, nullptr, kStatus}, {"help", 0, nullptr, kHelp},          {nullptr, 0, nullptr, 0}};
     Options options;
-    constexpr double kFarthest = 1e6, kLongestDelay = 60.0;
+    const auto microseconds = [](const char* name, double low, double high) {
+        return std::chrono::microseconds(std::llround(number(name, optarg, low, high) * 1e6));
+    };
     for (int one; (one = getopt_long(count, words, "", known, nullptr)) != -1;) {
         switch (one) {
         case kPort:
             options.port = static_cast<std::uint16_t>(number("--port", optarg, 1, 65'535));
             break;
+        case kControl:
+            options.control = static_cast<std::uint16_t>(number("--control", optarg, 0, 65'535));
+            break;
+        case kLoss:
+            options.settings.loss = number("--loss", optarg, 0.0, 1.0);
+            break;
+        case kSeed:
+            options.seed = number("--seed", optarg, std::uint64_t{0}, ~std::uint64_t{0});
+            break;
+        case kStatus:
+            options.status_every = microseconds("--status", 0.0, 3600.0);
+            break;
         case kRange:
-            options.limits.range = number("--range", optarg, 0.0, kFarthest);
+            options.settings.limits.range = number("--range", optarg, 0.0, kFarthest);
             break;
         case kHops:
-            options.limits.hops = number("--hops", optarg, 1, kMostNumber);
+            options.settings.limits.hops = number("--hops", optarg, 1, kMostNumber);
             break;
         case kHopDelay:
-            options.hop_delay = std::chrono::microseconds(
-                std::llround(number("--hop-delay", optarg, 0.0, kLongestDelay) * 1e6));
+            options.settings.hop_delay = microseconds("--hop-delay", 0.0, kLongestDelay);
             break;
         case kRobot:
             add_robot(options, optarg);

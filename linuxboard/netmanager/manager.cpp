@@ -1,7 +1,6 @@
 #include "linuxboard/netmanager/manager.h"
 
 #include <boost/asio/read_until.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/streambuf.hpp>
 #include <boost/asio/write.hpp>
 
@@ -81,7 +80,13 @@ class Client : public std::enable_shared_from_this<Client> {
 };
 
 Manager::Manager(boost::asio::io_context& io, Options options)
-    : io_(io), options_(std::move(options)), acceptor_(io) {
+    : io_(io),
+      options_(std::move(options)),
+      settings_(options_.settings),
+      acceptor_(io),
+      control_(io),
+      status_timer_(io),
+      random_(options_.seed) {
     try {
         acceptor_.open(tcp::v4());
         acceptor_.set_option(tcp::acceptor::reuse_address(true));
@@ -90,6 +95,7 @@ Manager::Manager(boost::asio::io_context& io, Options options)
     } catch (const boost::system::system_error& error) {
         throw std::runtime_error("port " + std::to_string(options_.port) + ": " + error.code().message());
     }
+    if (options_.control != 0) listen_for_settings();
     if (!options_.log.empty()) {
         log_.open(options_.log);
         if (!log_) throw std::runtime_error(options_.log + ": cannot be written");
@@ -100,12 +106,74 @@ Manager::Manager(boost::asio::io_context& io, Options options)
 
 Manager::~Manager() = default;
 
+double Manager::seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+}
+
 void Manager::note(const char* event, int from, int to, int hops, std::size_t octets) {
     if (!log_.is_open()) return;
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begun_;
     char line[160];
-    std::snprintf(line, sizeof line, "%.6f,%s,%d,%d,%d,%zu\n", time.count(), event, from, to, hops, octets);
+    std::snprintf(line, sizeof line, "%.6f,%s,%d,%d,%d,%zu\n", seconds(), event, from, to, hops, octets);
     log_ << line << std::flush;
+}
+
+void Manager::listen_for_settings() {
+    using boost::asio::ip::udp;
+    if (!control_.is_open()) {
+        Error error;
+        control_.open(udp::v4(), error);
+        if (!error) control_.bind({udp::v4(), options_.control}, error);
+        if (error)
+            throw std::runtime_error("port " + std::to_string(options_.control) + ": " + error.message());
+    }
+    control_.async_receive_from(boost::asio::buffer(words_), asker_, [this](Error error, std::size_t size) {
+        if (error == boost::asio::error::operation_aborted) return;
+        if (!error) {
+            const std::string answer = obey({words_.data(), size});
+            // Whoever has no port wants no answer.
+            Error none;
+            if (asker_.port() != 0) control_.send_to(boost::asio::buffer(answer), asker_, 0, none);
+        }
+        listen_for_settings();
+    });
+}
+
+/// The status, or what is wrong.
+std::string Manager::obey(std::string_view words) {
+    while (words.ends_with('\n') || words.ends_with('\r'))
+        words.remove_suffix(1);
+    std::string answer = apply_words(words, settings_);
+    const std::string line(words.substr(0, words.find_first_of("\r\n")));
+    if (answer.empty())
+        std::printf("set %s\n", line.c_str());
+    else
+        std::printf("not set: %s\n", answer.c_str());
+    std::fflush(stdout);
+    note(answer.empty() ? "set" : "not_set", kEverybody, kEverybody, 0, words.size());
+    stir();
+    return (answer.empty() ? traffic_.status(seconds(), settings_, places_) : answer) + "\n";
+}
+
+void Manager::stir() {
+    if (status_due_ || options_.status_every.count() == 0) return;
+    status_due_ = true;
+    status_timer_.expires_after(options_.status_every);
+    status_timer_.async_wait([this](Error error) {
+        if (!error) print_status();
+    });
+}
+
+void Manager::print_status() {
+    status_due_ = false;
+    std::printf("status %s\n", traffic_.status(seconds(), settings_, places_).c_str());
+    std::fflush(stdout);
+}
+
+bool Manager::is_lost(int from, int to) {
+    const double loss = settings_.loss_between(from, to);
+    if (loss <= 0) return false;
+    constexpr double kSteps = 9007199254740992.0;  // 2^53
+    return static_cast<double>(random_() >> 11) / kSteps < loss;
 }
 
 int Manager::number_of(const boost::asio::ip::address& address) const {
@@ -139,6 +207,7 @@ void Manager::welcome(tcp::socket socket) {
     auto client = std::make_shared<Client>(*this, std::move(socket), number);
     clients_[number] = client;
     places_.try_emplace(number);
+    stir();
     client->read();
 }
 
@@ -151,6 +220,7 @@ void Manager::gone(Client& client, const std::string& why) {
     const std::shared_ptr<Client> kept = known->second;
     clients_.erase(known);
     places_.erase(client.number());
+    stir();
     kept->close();
 }
 
@@ -159,7 +229,7 @@ void Manager::receive(Client& client, std::string_view line) {
     const int from = client.number();
     if (!message) return note("bad", from, kEverybody, 0, line.size());
     if (message->place) places_[from] = message->place;
-    const auto hops = reached(places_, from, options_.limits);
+    const auto hops = reached(places_, from, settings_.limits);
     if (message->to == kEverybody) {
         note("all", from, kEverybody, 0, message->data.size());
         for (const auto& [to, count] : hops)
@@ -167,19 +237,27 @@ void Manager::receive(Client& client, std::string_view line) {
     } else if (const auto count = hops.find(message->to); count != hops.end()) {
         pass(from, message->to, count->second, message->data);
     } else {
-        note(clients_.contains(message->to) ? "too_far" : "absent", from, message->to, 0,
-             message->data.size());
+        const char* fate = clients_.contains(message->to) ? "too_far" : "absent";
+        note(fate, from, message->to, 0, message->data.size());
+        traffic_.add(seconds(), from, message->to, 0, message->data, fate);
+        stir();
     }
 }
 
 void Manager::pass(int from, int to, int hops, const std::string& data) {
     const auto deliver = [this, from, to, hops, data] {
         const auto client = clients_.find(to);
-        if (client == clients_.end()) return note("absent", from, to, hops, data.size());
-        note(client->second->write(line_from(from, data)) ? "passed" : "lost", from, to, hops, data.size());
+        const char* fate = "passed";
+        if (client == clients_.end())
+            fate = "absent";
+        else if (is_lost(from, to) || !client->second->write(line_from(from, data)))
+            fate = "lost";
+        note(fate, from, to, hops, data.size());
+        traffic_.add(seconds(), from, to, hops, data, fate);
+        stir();
     };
-    if (options_.hop_delay.count() == 0) return deliver();
-    auto timer = std::make_shared<boost::asio::steady_timer>(io_, hops * options_.hop_delay);
+    if (settings_.hop_delay.count() == 0) return deliver();
+    auto timer = std::make_shared<boost::asio::steady_timer>(io_, hops * settings_.hop_delay);
     timer->async_wait([timer, deliver](Error error) {
         if (!error) deliver();
     });

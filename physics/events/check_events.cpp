@@ -68,7 +68,7 @@ class EventChecker {
             const Action& action = event.action;
             if (action.verb == Verb::Add)
                 for_each_thing(action.thing, add);
-            else
+            else if (action.verb != Verb::Send)
                 touched_.insert(action.object);
         }
     }
@@ -99,6 +99,10 @@ class EventChecker {
         if (std::string problem = problem_of(action); !problem.empty()) fail(event, problem);
         if (event.when) check(event, *event.when);
         switch (action.verb) {
+        case Verb::Send:
+            if (std::string problem = problem_of_computer(plan_, action.object); !problem.empty())
+                fail(event, problem);
+            return;
         case Verb::Add:
             check_new(event);
             return;
@@ -246,7 +250,7 @@ class EventChecker {
 }  // namespace
 
 std::string problem_of(const Action& action) {
-    if (action.verb < Verb::Move || action.verb > Verb::Tune) return "unknown action";
+    if (action.verb < Verb::Move || action.verb > Verb::Send) return "unknown action";
     const auto& to = action.to;
     if (std::string problem =
             first_of({to ? out_of("x", to->x, -kFarthestOfEvents, kFarthestOfEvents) : "",
@@ -275,6 +279,10 @@ std::string problem_of(const Action& action) {
         return fmt::format("'{}' cannot be set", action.property);
     case Verb::Tune:
         return problem_of_tuning(action.property, action.value);
+    case Verb::Send:
+        if (action.text.empty() || action.text.size() > kLongestText)
+            return fmt::format("a text of {} octets (expected 1 to {})", action.text.size(), kLongestText);
+        return out_of("port", action.number, 1, 65'535);
     case Verb::Select:
         return out_of("position", action.number, 0, kLastPosition);
     case Verb::Remote:
@@ -283,6 +291,25 @@ std::string problem_of(const Action& action) {
     default:
         return {};
     }
+}
+
+std::string problem_of_computer(const EventPlan& plan, std::string_view name) {
+    std::string known;
+    for (const Computer& one : plan.computers) {
+        if (one.name == name) return {};
+        known += (known.empty() ? "" : ", ") + one.name;
+    }
+    if (known.empty())
+        return fmt::format("there is no computer on a network that could be '{}' (expected [network], and a "
+                           "Linux board or a [[host]])",
+                           name);
+    return fmt::format("there is no '{}' on the network (expected {})", name, known);
+}
+
+bool EventPlan::may_send() const {
+    const bool planned = std::any_of(events.begin(), events.end(),
+                                     [](const Event& event) { return event.action.verb == Verb::Send; });
+    return !computers.empty() && (live || mission || planned);
 }
 
 void check_events(const EventPlan& plan, const World& world) {

@@ -6,7 +6,11 @@
 #include "cosim/core/time.h"
 #include "physics/description/description.h"
 
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace puckloop::physics {
 
@@ -24,6 +28,7 @@ enum class Verb : std::uint8_t {
     Remote,     ///< robot, or all: a key of the remote control
     Unset,      ///< robot: its sensors see the world again, after Set of what is not there
     Tune,       ///< robot: another value of a physical parameter
+    Send,       ///< computer of the network: a datagram for one of its programs
 };
 
 /// Objects of Set that are no things.
@@ -55,12 +60,15 @@ struct Action {
                              ///< "ground": what a robot's ground sensors see in place of the floor. Tune:
                              ///< the parameter's name
     double value = 0.0;      ///< Set, Tune
-    int number = 0;          ///< Select: position 0..15. Remote: key 0..63
+    int number = 0;          ///< Select: position 0..15. Remote: key 0..63. Send: port 1..65535
     int address = 0;         ///< Remote: 0..31
     double hold = 0.0;       ///< s, Remote: how long the key is held
+    std::string text{};      ///< Send: up to kLongestText octets
     std::string command{};   ///< as a user would type it: "move can to 10 cm, 0 cm"
     std::string toml{};      ///< the same as lines of an [[event]] table
 };
+
+inline constexpr std::size_t kLongestText = 1000;
 
 struct Condition {
     enum class Kind : std::uint8_t {
@@ -93,9 +101,16 @@ struct Event {
     Action action{};
 };
 
+/// That Send can reach.
+struct Computer {
+    std::string name{};
+    std::uint32_t address = 0;  ///< IPv4: 10.0.0.1 is 0x0A000001
+};
+
 /// All that may happen to one world.
 struct EventPlan {
     std::vector<Event> events{};
+    std::vector<Computer> computers{};
     bool live = false;     ///< commands may come in while it runs
     bool mission = false;  ///< a mission program may act (physics/tracker)
     bool repeats =
@@ -104,10 +119,14 @@ struct EventPlan {
 
     /// Can anything happen? A world without is as if there were no events at all.
     bool any() const { return live || mission || !events.empty(); }
+    /// Can a datagram be sent?
+    bool may_send() const;
 };
 
 /// What is wrong with an action whatever world it is done to: ranges, sizes. Empty: nothing.
 std::string problem_of(const Action& action);
+/// The same of who a datagram is for.
+std::string problem_of_computer(const EventPlan& plan, std::string_view name);
 /// Throws InputError naming the event and its place: objects that do not exist, places outside the arena, in
 /// a wall or in something that no event moves. `world` must have passed check().
 void check_events(const EventPlan& plan, const World& world);

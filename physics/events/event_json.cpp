@@ -21,10 +21,11 @@ namespace puckloop::physics {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NewThing, walls, boxes, cylinders, lamps, speakers, patches, virtuals)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Action, verb, object, to, relative, heading, over, thing, property, value,
-                                   number, address, hold, command, toml)
+                                   number, address, hold, text, command, toml)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Condition, kind, robot, other, at, radius, length, width, distance, on)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Event, name, file, place, at, when, delay, every, count, action)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, live, mission, repeats, journal)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Computer, name, address)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, computers, live, mission, repeats, journal)
 
 std::string to_json(const EventPlan& plan) {
     return nlohmann::json(plan).dump();

@@ -18,7 +18,8 @@ constexpr Time kFirstSignal = cosim::kMicrosecond;  // boards begin to run befor
 constexpr Time kButtonDown = cosim::kMillisecond;
 
 bool acts_on_board(const Action& action) {
-    return action.verb == Verb::Select || action.verb == Verb::Reset || action.verb == Verb::Remote;
+    return action.verb == Verb::Select || action.verb == Verb::Reset || action.verb == Verb::Remote ||
+           action.verb == Verb::Send;
 }
 
 }  // namespace
@@ -143,6 +144,7 @@ std::string Timeline::list() const {
 std::string Timeline::send(const Action& action, Time time) {
     if (std::string problem = problem_of(action); !problem.empty()) return problem;
     if (action.verb == Verb::Remote) return press_key(action, time);
+    if (action.verb == Verb::Send) return send_datagram(action, time);
     const Found robot = scene_.find(action.object);
     if (!robot) return scene_.unknown(action.object);
     if (robot.kind != Found::Kind::Robot) return fmt::format("'{}' is no robot", action.object);
@@ -155,6 +157,14 @@ std::string Timeline::send(const Action& action, Time time) {
         add(time, BoardInput::Reset, 1.0);
         add(time + kButtonDown, BoardInput::Reset, 0.0);
     }
+    return {};
+}
+
+std::string Timeline::send_datagram(const Action& action, Time time) {
+    if (std::string problem = problem_of_computer(plan_, action.object); !problem.empty()) return problem;
+    for (const Computer& one : plan_.computers)
+        if (one.name == action.object)
+            datagrams_.push_back({time, one.address, static_cast<std::uint16_t>(action.number), action.text});
     return {};
 }
 

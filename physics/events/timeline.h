@@ -4,8 +4,8 @@
 // Step k is the world's state at k ms. What is done to bodies, floor and light is done at the first step at
 // or after its time, behind the dynamics and before the sensors look. A condition is looked at after that;
 // when it holds, its event is due one step later, plus its delay; a command that has come in by then
-// likewise. Signals to a board (selector, reset button, remote control) leave at their exact time, at the
-// earliest 1 us.
+// likewise. Signals to a board (selector, reset button, remote control) and datagrams leave at their exact
+// time, at the earliest 1 us.
 
 #include "physics/events/command_source.h"
 #include "physics/events/journal.h"
@@ -14,6 +14,9 @@
 
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace puckloop::physics {
 
@@ -25,6 +28,14 @@ struct BoardSignal {
     std::size_t robot = 0;
     BoardInput input = BoardInput::Selector;
     double value = 0.0;
+};
+
+/// What Send sends.
+struct Datagram {
+    cosim::Time time = 0;
+    std::uint32_t address = 0;  ///< of the computer
+    std::uint16_t port = 0;
+    std::string text{};
 };
 
 class Timeline {
@@ -44,7 +55,9 @@ class Timeline {
     void at_step(std::vector<std::string>& log);
     /// After it: signals up to a step later, in order of time.
     void take_signals(std::vector<BoardSignal>& signals);
-    /// No signal leaves before this.
+    /// The same of datagrams.
+    std::vector<Datagram> take_datagrams() { return std::exchange(datagrams_, {}); }
+    /// No signal and no datagram leaves before this.
     cosim::Time next_signal() const;
 
     /// The run has ended: whoever still waits for a reply gets one.
@@ -67,6 +80,7 @@ class Timeline {
     void finish(const Due& due, cosim::Time time, const std::string& refused, std::vector<std::string>& log);
     void carry_out(std::vector<std::string>& log);
     std::string send(const Action& action, cosim::Time time);
+    std::string send_datagram(const Action& action, cosim::Time time);
     std::string press_key(const Action& action, cosim::Time time);
     std::string list() const;
 
@@ -81,8 +95,9 @@ class Timeline {
     std::vector<std::uint64_t> begun_;       // how often each event of the plan was scheduled
     std::uint64_t serial_ = 0;
     std::multimap<cosim::Time, BoardSignal> signals_;
-    bool toggle_ = false;           // of the remote control
-    cosim::Time key_released_ = 0;  // of the last key
+    std::vector<Datagram> datagrams_;  ///< in order of time
+    bool toggle_ = false;              // of the remote control
+    cosim::Time key_released_ = 0;     // of the last key
 };
 
 }  // namespace puckloop::physics

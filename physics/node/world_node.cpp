@@ -9,6 +9,7 @@
 #include "physics/world/pose_signals.h"
 #include "physics/world/recorder.h"
 #include "physics/world/world_log.h"
+#include "protocols/ip_packet.h"
 
 #include <nlohmann/json.hpp>
 
@@ -37,6 +38,15 @@ void add_events(const Journal& journal, nlohmann::ordered_json& report) {
         report["events"].push_back(std::move(line));
     }
     if (const auto warnings = journal.warnings(); !warnings.empty()) report["warnings"] = warnings;
+}
+
+/// As from a program of the same computer that has no port.
+cosim::Octets octets_of(const Datagram& datagram) {
+    protocols::IpPacket packet;
+    packet.from = packet.to = datagram.address;
+    packet.protocol = protocols::kUdp;
+    packet.payload = protocols::encode_udp({0, datagram.port, datagram.text}, packet.from, packet.to);
+    return cosim::Octets(protocols::encode(packet));
 }
 
 /// The tracker, if there is one, takes the place of `commands`.
@@ -70,6 +80,7 @@ struct WorldNode::Impl {
     std::vector<BoothLink> booths;
     SoundLink sound;
     cosim::PortIndex first_booth = 0xFFFF;
+    cosim::PortIndex messages = 0xFFFF;
     std::vector<cosim::PortIndex> pose_ports;                     // media: they hear where everything is
     std::vector<double> poses;                                    // as last published; empty without those
     std::map<std::size_t, double> scene;                          // likewise, by id: what events change
@@ -137,6 +148,10 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
         booths.emplace_back(booth, static_cast<cosim::PortIndex>(ports.size()));
         ports.push_back({booth.name, cosim::PortKind::Signals});
     }
+    if (!timeline.plan().computers.empty()) {
+        messages = static_cast<cosim::PortIndex>(ports.size());
+        ports.push_back({"messages", cosim::PortKind::Network});
+    }
     add_cameras();
     const std::string& directory = model.description().recording.directory;
     if (directory.empty()) return;
@@ -203,6 +218,8 @@ void WorldNode::Impl::publish_events(std::vector<cosim::Message>& outbox) {
         const auto port = static_cast<cosim::PortIndex>(signal.robot * kPortsOfRobot);
         if (id != kUnusedSignal) outbox.push_back({signal.time, port, cosim::Signal{id, signal.value}});
     }
+    for (const Datagram& one : timeline.take_datagrams())
+        outbox.push_back({one.time, messages, cosim::Packet{one.time, 0, octets_of(one)}});
 }
 
 void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
@@ -316,11 +333,13 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
 }
 
 cosim::Time WorldNode::earliest_output(cosim::PortIndex port) const {
+    if (port == impl_->messages && !impl_->timeline.plan().may_send()) return cosim::kNever;
     if (port >= impl_->first_camera) return next_camera_message(impl_->next_step + kStep);
     return std::min(impl_->next_step + kStep, impl_->timeline.next_signal());
 }
 
-cosim::Time WorldNode::lookahead(cosim::PortIndex) const {
+cosim::Time WorldNode::lookahead(cosim::PortIndex port) const {
+    if (port == impl_->messages && !impl_->timeline.plan().may_send()) return cosim::kNever;
     return kStep + 1;  // a message just before a step shows one step after it
 }
 

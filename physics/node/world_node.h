@@ -6,9 +6,10 @@
 // "ir": poses for the infra-red medium (physics/world/pose_signals.h), and "<robot>.rab" of each such board:
 // the battery's voltage in steps of 10 mV. Then "<booth>" of each booth: barriers out, coloured LEDs in. Then
 // "<robot>.camera" of each robot with cameras: what they see, shortly before each frame
-// (physics/camera/camera_signals.h). Step k (state at k ms) uses what was stamped before k ms; its sensor
-// values and poses leave stamped (k+1) ms, only those that changed, rounded to world.publish_quantum, or for
-// poses to 10 um and 0.1 mrad. What happens to the world meanwhile: physics/events.
+// (physics/camera/camera_signals.h). Before those, if there is a network, "messages": datagrams that events
+// send to its computers. Step k (state at k ms) uses what was stamped before k ms; its sensor values and
+// poses leave stamped (k+1) ms, only those that changed, rounded to world.publish_quantum, or for poses to 10
+// um and 0.1 mrad. What happens to the world meanwhile: physics/events.
 
 #include "cosim/core/node.h"
 #include "physics/description/description.h"

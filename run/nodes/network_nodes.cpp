@@ -1,5 +1,6 @@
 #include "run/nodes/network_nodes.h"
 
+#include "cosim/trace/trace_hash.h"
 #include "physics/world/pose_signals.h"
 #include "run/nodes/linux_nodes.h"
 #include "run/nodes/plan_kit.h"
@@ -42,6 +43,48 @@ network::NetworkSpec network_spec(const scenarios::NetworkMedium& medium,
     return spec;
 }
 
+static_assert(wifi::kObstacleSignals == physics::kShapeSignals);
+
+/// Walls and things, as the radio meets them. Ids as of physics/world/pose_signals.h.
+void add_obstacles(const physics::World& world, const wifi::WifiSettings& settings, wifi::WifiSpec& spec) {
+    if (settings.wall_loss == 0 && settings.thing_loss == 0) return;
+    const physics::SceneSignals signals{physics::moving_names(world).size()};
+    spec.first_shape = static_cast<int>(signals.shape(true, 0));
+    const auto obstacle = [](const std::string& name, const physics::Shape& shape, double loss) {
+        const physics::ShapeValues values = physics::values_of(shape);
+        return wifi::Obstacle{.name = name,
+                              .box = values[0] != 0,
+                              .x = values[1],
+                              .y = values[2],
+                              .heading = values[3],
+                              .length = 2 * values[4],
+                              .width = 2 * values[5],
+                              .loss = loss};
+    };
+    const auto shapes = physics::fixed_shapes(world);
+    const auto names = physics::fixed_names(world);
+    const std::size_t walls = physics::built_in_count(world) + world.walls.size();
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        wifi::Obstacle one =
+            obstacle(names[i], shapes[i], i < walls ? settings.wall_loss : settings.thing_loss);
+        one.shape = static_cast<int>(signals.shape(true, i));
+        spec.obstacles.push_back(std::move(one));
+    }
+    std::size_t moving = world.robots.size();
+    const auto add = [&](const auto& things) {
+        for (const auto& thing : things) {
+            if (!thing.movable) continue;
+            wifi::Obstacle one = obstacle(thing.name, physics::shape_of(thing), settings.thing_loss);
+            one.pose = static_cast<int>(moving * physics::kPoseSignals);
+            one.away = static_cast<int>(signals.out(moving));
+            spec.obstacles.push_back(std::move(one));
+            ++moving;
+        }
+    };
+    add(world.boxes);
+    add(world.cylinders);
+}
+
 wifi::WifiSpec wifi_spec(const RunSetup& setup, const std::vector<scenarios::NetworkComputer>& computers) {
     const scenarios::Scenario& scenario = setup.scenario;
     const scenarios::NetworkMedium& medium = *scenario.network;
@@ -54,6 +97,8 @@ wifi::WifiSpec wifi_spec(const RunSetup& setup, const std::vector<scenarios::Net
     spec.settings = *medium.wifi;
     spec.access_point = medium.access_point;
     spec.csv = (setup.out / "wifi.csv").string();
+    add_obstacles(scenario.world, spec.settings, spec);
+    if (spec.settings.mesh) spec.routes_csv = (setup.out / "routes.csv").string();
     if (spec.settings.capture) spec.pcapng = (setup.out / "wifi.pcapng").string();
     for (const scenarios::NetworkComputer& one : computers) {
         wifi::WifiStation station{.computer = {one.name, one.address}};
@@ -116,6 +161,15 @@ void add_network(RunSetup& setup, const RunRequest& request) {
     cosim::LinkSpec places{"network.world", {kNetwork, "world"}, {"world", kNetwork}};
     places.record_from_b = false;
     setup.links.push_back(places);
+}
+
+void add_messages(RunSetup& setup) {
+    if (scenarios::computers_of(setup.scenario).empty()) return;
+    // Not in trace.csv: what was sent is in the world's log, and arrives as a packet.
+    const std::string port(cosim::kHandsPort);
+    cosim::LinkSpec messages{"network.messages", {kNetwork, port}, {"world", port}};
+    messages.record_from_b = false;
+    setup.links.push_back(messages);
 }
 
 }  // namespace puckloop::tools

@@ -14,6 +14,9 @@ void join_network(const RunSetup& setup, const std::string& computer, LinuxProgr
 /// Robots on it have radios, so that the world states where they are.
 bool has_moving_radios(const scenarios::Scenario& scenario);
 
+/// The link for what events send to computers of the network. Behind all others (cosim/trace/trace_hash.h).
+void add_messages(RunSetup& setup);
+
 /// Network, hosts and links. After the robots. Throws InputError.
 void add_network(RunSetup& setup, const RunRequest& request);
 

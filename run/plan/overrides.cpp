@@ -4,6 +4,7 @@
 #include "run/files/program_path.h"
 #include "scenarios/reader/faults/event_file.h"
 #include "scenarios/reader/faults/fault_tables.h"
+#include "scenarios/tables/network_tables.h"
 
 #include <fmt/format.h>
 
@@ -104,6 +105,7 @@ void apply(const RunRequest& request, Scenario& scenario) {
     if (request.duration) scenario.duration = request.duration;
     if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
     if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
+    scenarios::name_computers(scenario);
     if (!request.events.empty()) {
         scenarios::apply_event_file(request.events, scenario);
         physics::check_events(scenario.events, scenario.world);

@@ -119,6 +119,7 @@ Scenario read_scenario(const std::filesystem::path& file, const Settings& settin
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));
     scenario.events.events = read_events(top);
+    name_computers(scenario);
     scenario.expectations = read_expectations(top);
     top.finish();
     for (std::size_t i = 0; i < scenario.robots.size(); ++i)

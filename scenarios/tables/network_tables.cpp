@@ -74,6 +74,9 @@ void read_wifi(Reader& reader, NetworkMedium& medium) {
     }
     if (reader.has("rate")) reader.fail("rate", "a radio has rates of its own", "rate in [network.wifi]");
     if (reader.has("access_point")) medium.access_point = read_place(reader, "access_point");
+    if (settings.mesh && medium.access_point)
+        reader.fail("access_point", "a mesh has no access point",
+                    "mesh = false in [network.wifi], or no access point");
     medium.latency = read_latency(reader, 5e-4);
     medium.queue = reader.integer("queue", medium.queue, 1, kLongestQueue);
 }
@@ -255,6 +258,12 @@ void read_network(Reader& top, Scenario& scenario) {
             throw InputError(scenario.file.string(),
                              fmt::format("line {}: {}", robot.linux_board->place_line, robot.name),
                              "an address without a network", "[network]");
+}
+
+void name_computers(Scenario& scenario) {
+    scenario.events.computers.clear();
+    for (const NetworkComputer& one : computers_of(scenario))
+        scenario.events.computers.push_back({one.name, protocols::address_of(one.address).value_or(0)});
 }
 
 std::vector<NetworkComputer> computers_of(const Scenario& scenario) {

@@ -25,6 +25,9 @@ struct NetworkComputer {
 /// Robots that have a Linux board, and hosts, in their order. Without [network] none.
 std::vector<NetworkComputer> computers_of(const Scenario& scenario);
 
+/// For events that send something to one of them.
+void name_computers(Scenario& scenario);
+
 /// Every computer has an address of its own in the network, which there is. Throws InputError.
 void check_addresses(const Scenario& scenario);
 

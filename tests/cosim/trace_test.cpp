@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "cosim/trace/trace_csv.h"
+#include "cosim/trace/trace_hash.h"
 #include "cosim/trace/trace_merger.h"
 #include "cosim/trace/trace_stats.h"
 #include "protocols/irda.h"
@@ -237,6 +238,26 @@ TEST_CASE("the hash is a fixed function of the messages") {
     run.options.in_process = true;
     // Worked out from the documented form by a program of another language; changes only with that form.
     CHECK(run().trace_sha256 == "150ed69d5056d0be8c6bcb8e1d605bcdf15862079287630d578bbdb0c34ccbe2");
+}
+
+TEST_CASE("a link that only hands use is in the hash once they do") {
+    const LinkSpec wire{"wire", {"left", "uart0"}, {"right", "uart0"}},
+        hands{"hands", {"left", std::string(kHandsPort)}, {"right", std::string(kHandsPort)}};
+    const auto hash_of = [](const std::vector<LinkSpec>& links, bool used) {
+        TraceHash hash;
+        hash.begin(links);
+        TraceRecord record{};
+        record.link = 1;
+        record.payload = Signal{1, 2.0};
+        if (used) hash.record(record);
+        return hash.finish();
+    };
+    const std::string plain = hash_of({wire}, false);
+    CHECK(hash_of({wire, hands}, false) == plain);
+    CHECK(hash_of({wire, hands}, true) != plain);
+    LinkSpec other = hands;
+    other.a.port = "uart1";
+    CHECK(hash_of({wire, other}, false) != plain);
 }
 
 TEST_CASE("statistics of a trace") {

@@ -287,3 +287,25 @@ TEST_CASE("each errno that a fault can give is one") {
     CHECK_THROWS_AS(linuxboard::LinuxFaults({{unknown, Trigger(unknown, fault_stream(unknown, 1, 0))}}),
                     InputError);
 }
+
+TEST_CASE("dns_silence: a resolver asks again, and gives up when no question is answered") {
+    FaultSpec spec = fault("dns_silence").set("timeout", 5.0).set("attempts", 2.0);
+    spec.begin = 10 * kSecond;
+    spec.end = 30 * kSecond;
+    linuxboard::LinuxFaults faults({{spec, Trigger(spec, fault_stream(spec, 1, 0))}});
+    const auto at = [&](int seconds) {
+        const auto result = faults.resolve(seconds * kSecond, "server");
+        return std::pair(result.until / kSecond - seconds, result.failed);
+    };
+    CHECK(at(9) == std::pair(Time{0}, false));
+    CHECK(at(10) == std::pair(Time{10}, true));
+    CHECK(at(24) == std::pair(Time{10}, true));  // asked at 24 and 29 s
+    CHECK(at(26) == std::pair(Time{5}, false));  // at 26 and 31 s
+    CHECK(at(30) == std::pair(Time{0}, false));
+    const auto& evidence = faults.carried()[0].evidence;
+    CHECK(evidence.fired() == 3);
+    CHECK(evidence.firings()[0].what == "server is not answered for 10.000 s");
+    CHECK(evidence.firings()[2].what == "server is not answered for 5.000 s and then is");
+    CHECK(linuxboard::LinuxFaults::concern_names(faults.carried()));
+    CHECK_FALSE(linuxboard::LinuxFaults::concern_names({}));
+}

@@ -151,6 +151,42 @@ TEST_CASE("by radio the same in every placement, and frames leave evidence", "[n
     CHECK(bench.report("far")["faults"][0]["fired"] > 3);
 }
 
+TEST_CASE("a wall of the world is in the way of radios, and a mesh goes round it", "[network][mesh]") {
+    const Workbench bench;
+    const auto text = [&](const std::string& wifi, const std::string& more = "") {
+        std::string all =
+            fmt::format("[run]\nduration = \"3 s\"\n[arena]\nsize = [\"6 m\", \"6 m\"]\n[[wall]]\n"
+                        "name = \"long\"\nfrom = [\"0 m\", \"-3 m\"]\nto = [\"0 m\", \"2 m\"]\n"
+                        "[network]\nmode = \"wifi\"\n[network.wifi]\nshadowing = \"0 dB\"\n{}\n",
+                        wifi);
+        const std::vector<std::tuple<std::string, std::string, std::string>> hosts{
+            {"server", "2 m\", \"-2 m", python("echo_server.py")},
+            {"client", "-2 m\", \"-2 m", python("echo_client.py")},
+            {"between", "0 m\", \"2.5 m", "[\"true\"]"}};
+        for (const auto& [name, place, program] : hosts)
+            all += fmt::format("[[host]]\nname = \"{}\"\nposition = [\"{}\"]\nprogram = {}\n", name, place,
+                               program);
+        return all + more;
+    };
+    const auto answers = [&](const std::string& name, const std::string& scenario) {
+        const Ended ended = bench.run(name, {bench.file(name + ".toml", scenario), "--in-process"});
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        return count(log_of(bench, name, "client"), "answer ");
+    };
+    // 4 m: -43 dBm; through the wall 60 dB less.
+    CHECK(answers("open", text("")) == 20);
+    CHECK(answers("walled", text("wall_loss = \"60 dB\"")) == 0);
+    CHECK(answers("round", text("wall_loss = \"60 dB\"\nmesh = true")) == 20);
+    const std::string routes = text_of(bench.out("round") / "routes.csv");
+    CHECK(routes.find("0.000000,client,server,between,2\n") != std::string::npos);
+    CHECK(bench.report("round")["nodes"]["network"]["mesh"]["passed_on"]["between"] == 40);
+    REQUIRE(
+        bench.run("apart", {bench.file("round.toml", text("wall_loss = \"60 dB\"\nmesh = true"))}).status ==
+        0);
+    check_same_run(bench, "round", "apart");
+}
+
 TEST_CASE("asyncio: many connections, datagrams, time-outs beside each other", "[network]") {
     const Workbench bench;
     check_everywhere(
@@ -164,6 +200,23 @@ TEST_CASE("asyncio: many connections, datagrams, time-outs beside each other", "
     CHECK(client.find("timeout 0.5\n") != std::string::npos);
     CHECK(client.find("Connect call failed") != std::string::npos);
     CHECK(count(log_of(bench, "o0", "server"), "tick") == 7);
+}
+
+TEST_CASE("a thousand connections at once", "[network]") {
+    const Workbench bench;
+    const std::string text = hosts(
+        {{"server", python("crowd_server.py", {"1000"})}, {"client", python("crowd_client.py", {"1000"})}},
+        "20 s");
+    const auto file = bench.file("crowd.toml", text);
+    const Ended ended = bench.run("o", {file, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    const std::string client = log_of(bench, "o", "client");
+    INFO(client);
+    CHECK(client.starts_with("opened 1000 right 1000\n"));
+    CHECK(log_of(bench, "o", "server") == "all 1000\nnone\n");
+    REQUIRE(bench.run("apart", {file}).status == 0);
+    check_same_run(bench, "o", "apart");
 }
 
 TEST_CASE("Boost.Asio: edge-triggered, a resolver's thread, timers", "[network]") {
@@ -263,6 +316,46 @@ TEST_CASE("a lossy network shows as retransmission and time, not as wrong data",
     CHECK(read.out.empty());
 }
 
+TEST_CASE("a connection is reset at the octet that the fault names", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file(
+        "reset.toml", hosts({{"server", python("counting_server.py")}, {"client", python("bulk_client.py")}},
+                            "3 s", "mode = \"fixed\"\nlatency = \"2 ms\"\nrate = \"8 Mbit/s\""));
+    const std::string fault = "connection_reset node=network from=client byte=123456";
+    // The client's own end by the exception is the run's failure.
+    CHECK(bench.run("o", {file, "--in-process", "--fault", fault}).status == 1);
+    CHECK(bench.run("apart", {file, "--fault", fault}).status == 1);
+    check_same_run(bench, "o", "apart");
+    CHECK(log_of(bench, "o", "server") == "123456 ConnectionResetError\n");
+    CHECK(log_of(bench, "o", "client").find("ConnectionResetError") != std::string::npos);
+    CHECK(bench.report("o")["faults"][0]["fired"] == 1);
+    // An address that the server shares: the connection is refused by the other one.
+    CHECK(
+        bench.run("clash", {file, "--in-process", "--fault", "address_clash node=network to=server share=1"})
+            .status == 1);
+    CHECK(log_of(bench, "clash", "client").find("ConnectionRefusedError") != std::string::npos);
+}
+
+TEST_CASE("names are not answered while the fault lasts", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file(
+        "names.toml", hosts({{"server", R"(["true"])"}, {"client", python("asks_names.py")}}, "30 s"));
+    const Words words{file, "--in-process", "--fault", "dns_silence node=client.linux for=17s timeout=4s"};
+    const Ended ended = bench.run("o", words);
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    // Two questions, 4 s each; the third time the second one is at 20 s.
+    CHECK(log_of(bench, "o", "client") ==
+          "0.0 own 10.0.0.253 after 0.0\n0.0 number ('10.0.0.254', 7) after 0.0\nhosts 0\n"
+          "0.0 server gaierror -3 after 8.0\n8.0 server gaierror -3 after 8.0\n"
+          "16.0 server ('10.0.0.254', 7) after 4.0\n20.0 server 10.0.0.254 after 0.0\n"
+          "20.0 nobody gaierror -2 after 0.0\n");
+    CHECK(bench.report("o")["faults"][0]["fired"] == 3);
+    const Ended apart = bench.run("apart", {file, "--fault", words[3]});
+    REQUIRE(apart.status == 0);
+    check_same_run(bench, "o", "apart");
+}
+
 TEST_CASE("a server that is killed ends its connections, and one that is paused does not", "[network]") {
     const Workbench bench;
     const auto file = bench.file(
@@ -326,6 +419,78 @@ TEST_CASE("the network manager passes messages by number, as far as range and ho
     CHECK(log_of(bench, "limited", "m3") == "2 to three\n1 from one\n");  // one hop, then two
 }
 
+TEST_CASE("the manager's settings change while the run goes on, the same in every placement", "[network]") {
+    const Workbench bench;
+    Words manager{PUCKLOOP_NETMANAGER, "--status", "0.2"};
+    std::string text = hosts({{"manager", list_of(manager)}}, "6 s");
+    for (int i = 1; i <= 2; ++i)
+        text += fmt::format("[[host]]\nname = \"m{}\"\naddress = \"10.0.0.{}\"\nprogram = {}\n", i, i,
+                            python("sender.py", {fmt::format("{}", i), fmt::format("{}", 3 - i)}));
+    const std::vector<std::pair<double, std::string>> changes{
+        {1.05, "loss 1 1 2"}, {2.05, "loss 0 1 2"}, {2.05, "range 0.5"}, {3.05, "range none"},
+        {3.05, "delay 0.5"},  {4.05, "delay 0"},    {4.55, "warp 9"}};
+    for (const auto& [time, words] : changes)
+        text += fmt::format("[[event]]\nat = \"{} s\"\nsend = \"manager\"\ntext = \"{}\"\n", time, words);
+    check_everywhere(bench, bench.file("live.toml", text));
+    // Each sends a number ten times a second from 0.5 s on; what the other one hears of each second.
+    const auto heard = [&](const std::string& who) {
+        std::istringstream lines(log_of(bench, "o0", who));
+        std::vector<int> by_second(7);
+        double delay_at_3 = 0;
+        for (std::string word; lines >> word;) {  // "2 sent at 1.500 came at 1.501"
+            double sent = 0, came = 0;
+            std::string skip;
+            lines >> skip >> skip >> sent >> skip >> skip >> came;
+            ++by_second.at(static_cast<std::size_t>(sent - 0.05));
+            if (sent > 3.2 && sent < 3.8) delay_at_3 = std::max(delay_at_3, came - sent);
+        }
+        CHECK(delay_at_3 == Approx(0.5).epsilon(0.02));
+        return by_second;
+    };
+    CHECK(heard("m2") == std::vector<int>{5, 0, 0, 10, 9, 0, 0});  // lost, too far
+    CHECK(heard("m1") == std::vector<int>{5, 10, 0, 10, 9, 0, 0});
+    const std::string log = log_of(bench, "o0", "manager");
+    INFO(log);
+    CHECK(count(log, "set loss 1 1 2\n") == 1);
+    CHECK(count(log, "not set: 'warp' (expected range M") == 1);
+    CHECK(count(log, "status {\"time_s\":") > 10);
+    CHECK(log.find("[1,2,1,5,7,") != std::string::npos);
+    const auto events = bench.report("o0")["nodes"]["world"]["events"];
+    REQUIRE(events.size() == 7);
+    CHECK(events[0]["action"] == "send manager text \"loss 1 1 2\"");
+}
+
+TEST_CASE("a manager that is killed comes back to robots that connect again", "[network]") {
+    const Workbench bench;
+    std::string text =
+        fmt::format("[run]\nduration = \"14 s\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n[network]\n[[host]]\n"
+                    "name = \"manager\"\nprogram = [\"{}\", \"--log\", \"{}\"]\n",
+                    PUCKLOOP_NETMANAGER, (bench.folder() / "killed.csv").string());
+    for (int i = 0; i < 2; ++i)
+        text +=
+            fmt::format("[[robot]]\nposition = [\"{} cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"network\"\n"
+                        "selector = 10\n[robot.linux]\nprogram = [\"{}\", \"--server\", \"manager:7700\"]\n",
+                        30 * i - 15, PUCKLOOP_FORWARD);
+    const auto file = bench.file("killed.toml", text);
+    const Words words{file, "--in-process", "--fault", "restart node=manager.linux at=4s down=1500ms"};
+    const Ended ended = bench.run("o", words);
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    for (const char* robot : {"robot0", "robot1"}) {
+        const std::string log = log_of(bench, "o", robot);
+        INFO(log);
+        CHECK(count(log, "connected with manager:7700\n") == 2);
+        CHECK(log.find("manager:7700: ") != std::string::npos);
+    }
+    // The log is the second manager's: both are back within a second of it, and their messages pass.
+    const std::string events = text_of(bench.folder() / "killed.csv");
+    INFO(events);
+    CHECK(count(events, ",connected,") == 2);
+    CHECK(count(events, ",passed,") >= 2);
+    REQUIRE(bench.run("apart", {file, "--fault", words[3]}).status == 0);
+    check_same_run(bench, "o", "apart");
+}
+
 TEST_CASE("a server drives a robot through puckloop-forward", "[network]") {
     const Workbench bench;
     const std::string text =
@@ -357,6 +522,10 @@ TEST_CASE("manager and forwarder refuse wrong use in one line, with status 2", "
     check({PUCKLOOP_NETMANAGER, "--range", "far"}, "--range: 'far'");
     check({PUCKLOOP_NETMANAGER, "--robot", "10.0.0=1"}, "is not ADDRESS=NUMBER");
     check({PUCKLOOP_NETMANAGER, "--port", "0x1"}, "--port");
+    check({PUCKLOOP_NETMANAGER, "--loss", "2"}, "--loss: '2'");
+    check({PUCKLOOP_NETMANAGER, "--control", "70000"}, "--control: '70000'");
+    check({PUCKLOOP_NETMANAGER, "--seed", "-1"}, "--seed: '-1'");
+    check({PUCKLOOP_NETMANAGER, "--status", "x"}, "--status: 'x'");
     check({PUCKLOOP_NETMANAGER, "more"}, "'more' is not an option");
     check({PUCKLOOP_NETMANAGER, "--log", "/nowhere/log.csv"}, "/nowhere/log.csv");
     check({PUCKLOOP_FORWARD}, "--server HOST:PORT is missing");
@@ -393,10 +562,27 @@ TEST_CASE("a scenario whose network cannot be is one line with its place, and st
           {"something else has the name 'host0'"});
     check("[network]\naddress = \"10.0.0.0/30\"\n",
           "[[host]]\nprogram = [\"true\"]\n[[host]]\nprogram = [\"true\"]\n", {"no address left"});
+    check("[network]\nmode = \"wifi\"\naccess_point = [\"0 m\", \"0 m\"]\n[network.wifi]\nmesh = true\n", "",
+          {"line 7", "a mesh has no access point"});
+    check("[network]\nmode = \"wifi\"\n[network.wifi]\nwall_loss = \"-1 dB\"\n", "",
+          {"line 8", "wall_loss is out of range"});
+    check("[network]\nmode = \"wifi\"\n[network.wifi]\nmesh_hops = 0\n", "",
+          {"line 8", "mesh_hops is out of range"});
+    check(fine, "[[event]]\nat = \"1 s\"\nsend = \"nobody\"\ntext = \"x\"\n",
+          {"line 8", "there is no 'nobody' on the network (expected host0)"});
+    check(fine, "[[event]]\nat = \"1 s\"\nsend = \"host0\"\n", {"line 8", "'text' is missing"});
+    check(fine, "[[event]]\nat = \"1 s\"\nsend = \"host0\"\ntext = \"x\"\nport = 0\n",
+          {"line 12", "port is out of range"});
     check(fine, "[[fault]]\nnode = \"network\"\nkind = \"loss\"\nfrom = \"nobody\"\n",
           {"'nobody' is at no end of network"});
     check(fine, "[[fault]]\nnode = \"network\"\nkind = \"partition\"\ngroup = \"nobody\"\n",
           {"there is no 'nobody' on the network"});
+    check(fine, "[[fault]]\nnode = \"network\"\nkind = \"access_point_away\"\n",
+          {"line 10", "no access point that could be away"});
+    check(fine, "[[fault]]\nnode = \"network\"\nkind = \"connection_reset\"\nbyte = -1\n",
+          {"line 11", "byte is out of range"});
+    check(fine, "[[fault]]\nnode = \"network\"\nkind = \"address_clash\"\ncache = \"0 s\"\n",
+          {"line 11", "cache is out of range"});
     check(fine, "[[fault]]\nnode = \"network\"\nkind = \"delay\"\ndelay = \"1 ms\"\njitter = \"2 ms\"\n",
           {"the jitter is larger than the delay"});
 }

@@ -2,6 +2,7 @@
 // that nothing depends on how time is granted.
 
 #include "base/error.h"
+#include "cosim/faults/node_fault.h"
 #include "tests/network/wifi_kit.h"
 
 #include <catch2/catch.hpp>
@@ -354,4 +355,56 @@ TEST_CASE("bursts of interference take their share of the channel, and spoil wha
     CHECK(weak.bits == Approx(clean).epsilon(0.02));
     CHECK(weak.report["interference"]["bursts"] > 100);
     CHECK_FALSE(flood(ring(1), 0.1).report.contains("interference"));
+}
+
+TEST_CASE("an access point that is away reads nothing and loses what it kept", "[wifi]") {
+    wifi::WifiSpec spec = ring(2);
+    spec.latency = kMillisecond;
+    cosim::FaultSpec fault;
+    fault.node = fault.name = "network";
+    fault.kind = "access_point_away";
+    fault.begin = 20 * kMillisecond;
+    fault.end = cosim::kSecond;
+    spec.faults = cosim::carried({{fault, 1, 0}});
+    std::vector<cosim::Message> sent;
+    for (int i = 0; i < 10; ++i)
+        sent.push_back(
+            packet(i == 9 ? 1200 * kMillisecond : 10 * i * kMillisecond, 0, kFirst + 1, std::to_string(i)));
+    std::string report;
+    const auto texts = [&](cosim::Time step) {
+        Lines lines;
+        for (const cosim::Message& message : carry(spec, sent, 2 * cosim::kSecond, step, &report)) {
+            const auto read = protocols::decode_ip(std::get<cosim::Packet>(message.payload).octets.view());
+            lines.emplace_back(protocols::decode_udp(*read)->data.c_str());
+        }
+        return lines;
+    };
+    // Those of 20 ms and later are tried seven times each, and given up.
+    const Lines came = texts(kMillisecond);
+    CHECK(texts(100 * kMillisecond) == came);
+    const auto read = nlohmann::json::parse(report);
+    INFO(report << fmt::format("{}", fmt::join(came, " ")));
+    CHECK(came == Lines{"0", "1", "9"});
+    CHECK(read["access_point"]["away"] == 7 * 7);
+    CHECK(read["stations"]["s0"]["radio"]["dropped"] == 7);
+    CHECK(read["faults"][0]["fired"] == read["access_point"]["away"]);
+    CHECK(read["faults"][0]["firings"][0][2] == "a frame of s0 is not read");
+    // By wire, and what waits in it: ten packets of 1500 octets at 11 Mbit/s take 15 ms and more.
+    sent.clear();
+    for (int i = 0; i < 10; ++i) {
+        sent.push_back(packet(16 * kMillisecond, 253, kFirst, std::to_string(i), 1500));
+        sent.back().port = 2;
+    }
+    sent.push_back(packet(30 * kMillisecond, 253, kFirst, "late", 1500));
+    sent.back().port = 2;
+    const Lines before = texts(kMillisecond);
+    CHECK(before.size() > 0);
+    CHECK(before.size() < 5);
+    const auto lost = nlohmann::json::parse(report)["faults"][0];
+    // The frame that was on the air then is read, and its acknowledgement is not.
+    CHECK(lost["fired"] == 11 - before.size() + 1);
+    CHECK(lost["firings"].back()[2] == "a packet of sink in the access point");
+    spec.access_point.reset();
+    spec.stations.pop_back();
+    CHECK_THROWS_WITH(wifi::WifiNode(spec), Catch::Contains("no access point that could be away"));
 }

@@ -23,10 +23,10 @@ class Live(unittest.TestCase):
         self.folder = pathlib.Path(place.name)
         self.out = self.folder / "o"
 
-    def start(self, duration):
+    def start(self, duration, scenario=SCENARIO):
         """A run that waits for its client, and a viewer: its address."""
         # pylint: disable=consider-using-with
-        self.run = subprocess.Popen([PROGRAM, "run", SCENARIO, "--control", "--duration", str(duration), "--out",
+        self.run = subprocess.Popen([PROGRAM, "run", scenario, "--control", "--duration", str(duration), "--out",
                                      self.out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, self.run)
         until = time.monotonic() + 60
@@ -287,6 +287,53 @@ class Live(unittest.TestCase):
         self.assertGreater(self.report()["faults"][0]["fired"], 0)
         self.assertEqual(self.report()["faults"][1]["fired"], 6)
         self.assertIn('data = "74797065640d"', (self.out / "events.toml").read_text())
+
+    def test_the_page_shows_the_network_manager_and_sets_it(self):
+        if not find_chromium():
+            self.skipTest("no chromium is installed")
+        scenario = self.folder / "managed.toml"
+        sender = SOURCE / "tests/network/programs/sender.py"
+        scenario.write_text(
+            '[run]\nduration = "30 s"\n[arena]\nsize = ["1 m", "1 m"]\n[network]\n[[host]]\nname = "manager"\n'
+            'program = ["puckloop-netmanager", "--status", "0.2"]\n' + "".join(
+                f'[[host]]\nname = "m{i}"\naddress = "10.0.0.{i}"\n'
+                f'program = ["python3", "-B", "{sender}", "{i}", "{23 - i}"]\n' for i in (11, 12)) +
+            '[[robot]]\nposition = ["0 m", "0 m"]\n[robot.pic]\nfirmware = "own"\n')
+        address = self.start(30, scenario)
+        browser = Browser()
+        self.addCleanup(browser.close)
+        browser.open(address)
+        browser.wait("document.body && document.body.dataset.ready")
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 2000 })")
+        browser.wait("Number(document.body.dataset.simulated) === 2")
+        browser.wait("document.querySelectorAll('#network-part td').length === 4")
+        self.assertEqual(browser.value("[...document.querySelectorAll('#network-part td')].map((one) => one.textContent)"),
+                         ["", "1", "1", ""])
+        self.assertEqual(browser.value("document.querySelectorAll('#network-part td.failed').length"), 0)
+        browser.wait("parseFloat(document.querySelector('#network-part li').textContent) > 1.2")
+        self.assertRegex(browser.value("document.querySelector('#network-part li').textContent"),
+                         "^1\\.[0-9]+ 1[12] to 1[12]: sent at 1\\.")
+        browser.value("""(() => { const field = document.querySelector('#network-part [name=loss]'); field.value = '1';
+            field.dispatchEvent(new Event('change')); })()""")
+        browser.value("window.puckloopView.drive({ do: 'step', ms: 1000 })")
+        browser.wait("Number(document.body.dataset.simulated) === 3")
+        browser.wait("document.querySelectorAll('#network-part td.failed').length === 2")
+        browser.wait("document.querySelector('#network-part li.failed').textContent.includes('lost sent at 2.')")
+        self.assertEqual(browser.value("document.querySelector('#network-part [name=loss]').value"), "1")
+        # At an earlier time what was known then.
+        browser.value("window.puckloopView.jump(1.0, -1)")
+        browser.wait("document.querySelectorAll('#network-part td.failed').length === 0")
+        browser.value("document.getElementById('end-run').click()")
+        browser.wait("document.body.dataset.over === 'true'")
+        self.run.wait(60)
+        self.assertEqual(browser.errors, [])
+        events = (self.out / "events.toml").read_text()
+        self.assertIn('send = "manager"\ntext = "loss 1"', events)
+        with urllib.request.urlopen(address + "network?at=1500", timeout=60) as answer:
+            self.assertEqual(json.loads(answer.read())[0]["status"]["loss"], 0)
+        for wrong in ("network", "network?at=", "network?at=x", "network?at=-1", "network?from=1"):
+            with self.assertRaises(urllib.error.HTTPError):
+                urllib.request.urlopen(address + wrong, timeout=60)
 
     def test_the_page_flashes_an_image(self):
         if not find_chromium():

@@ -158,7 +158,8 @@ TEST_CASE("a command becomes a table and a table a command without loss") {
           "add floor_patch name p centre 0 m, 0 m grey 0.1 shape disc radius 4 cm",
           "add wall name w from 0 m, 0 m to 10 cm, 10 cm", "add speaker name s position 0 m, 1 m level 100",
           "add speaker name t position 0 m, 1 m level 100 on 1 s duration 30 ms every 1 s times 3 wave noise",
-          "add cylinder name c centre 0 m, 0 m radius 1 cm"}) {
+          "add cylinder name c centre 0 m, 0 m radius 1 cm", "send manager text \"range 0.5\"",
+          "send robot0 text stop port 9", "send a text \"text port send\" port 65535"}) {
         INFO(text);
         const auto action = parse_command(text);
         CHECK(action.command == text);
@@ -189,7 +190,7 @@ TEST_CASE("no line of words brings the grammar down, and what it takes it gives 
     for (int i = 0; i < 20'000; ++i) {
         // Half of them begin well.
         std::string text =
-            random.below(2) == 0 ? "" : std::string(action_forms()[random.below(11)].verb) + " can";
+            random.below(2) == 0 ? "" : std::string(action_forms()[random.below(action_forms().size())].verb) + " can";
         for (auto n = random.below(9); n > 0; --n)
             text += " " + words[random.below(words.size())];
         if (random.below(10) == 0 && !text.empty())

@@ -28,6 +28,9 @@ Scenario with_links() {
     scenario.tams.emplace_back().name = "tam0";
     scenario.tams[0].xbee.fitted = true;
     scenario.world.ircom = true;
+    scenario.network.emplace().access_point = {0, 0};
+    scenario.network->wifi.emplace();
+    scenario.hosts.emplace_back().name = "host0";
     return scenario;
 }
 
@@ -101,6 +104,16 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("loss node=ether to=coordinator", "'coordinator' is at no end of ether (expected tam0");
     said("loss node=ether frame=beacon", "expected one of any, data, acknowledge");
     said("clash node=ether from=tam0", "comes from outside");
+    said("access_point_away node=network from=robot0", "away for all");
+    said("access_point_away node=network count=2", "holds during its whole window");
+    said("address_clash node=network to=robot1",
+         "'robot1' is at no end of network (expected robot0 or host0");
+    said("address_clash node=network share=2", "share is out of range");
+    said("address_clash node=network answers=perhaps", "one of reset, nothing");
+    said("connection_reset node=network byte=-1", "byte is out of range");
+    said("connection_reset node=network byte=x", "no whole number");
+    said("dns_silence node=robot0.linux attempts=0", "attempts is out of range");
+    said("dns_silence node=network", "unknown fault kind 'dns_silence'");
     said("clash node=ether load=0", "load is out of range");
     said("clash node=ether every=2", "unknown key 'every'");
     said("loss node=ether match=0", "match is no pattern");
@@ -156,6 +169,24 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("weak_emitter link=robot0.ir emitter=13 gain=0.5", "emitter is out of range");
     said("drop link=robot0.uart \"", "a quote is open");
     said("drop link=robot0.uart link=x", "given twice");
+}
+
+TEST_CASE("faults of a network need what they are about") {
+    Scenario scenario = with_links();
+    const auto said = [&](const std::string& words) -> std::string {
+        try {
+            add_fault(words, scenario);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    CHECK(said("access_point_away node=network begin=1s for=2s") == "accepted");
+    CHECK(said("dns_silence node=host0.linux timeout=1s") == "accepted");
+    scenario.network->access_point.reset();
+    CHECK_THAT(said("access_point_away node=network"), Catch::Contains("has no access point"));
+    scenario.network.reset();
+    CHECK_THAT(said("dns_silence node=robot0.linux"), Catch::Contains("without a network"));
 }
 
 TEST_CASE("a file of what was done has events and faults, and gives both again") {

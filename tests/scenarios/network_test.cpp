@@ -66,7 +66,7 @@ TEST_CASE("what the radio's table sets, and who has one", "[network]") {
     const TemporaryFile file(kBegin +
                              "[network]\nmode = \"wifi\"\naccess_point = [\"1 m\", \"-50 cm\"]\n"
                              "[network.wifi]\nstandard = \"b\"\nrate = \"5.5 Mbit/s\"\npower = \"8 dBm\"\n"
-                             "shadowing = \"0 dB\"\nexponent = 2.5\nattempts = 4\n"
+                             "shadowing = \"0 dB\"\nexponent = 2.5\nattempts = 4\nwall_loss = \"6.9 dB\"\n"
                              "[[host]]\nname = \"pc\"\n" +
                              kProgram + "[[host]]\nname = \"laptop\"\nposition = [\"0 m\", \"2 m\"]\n" +
                              kProgram);
@@ -80,6 +80,13 @@ TEST_CASE("what the radio's table sets, and who has one", "[network]") {
     CHECK(radio.shadowing == 0);
     CHECK(radio.exponent == Approx(2.5));
     CHECK(radio.attempts == 4);
+    CHECK(radio.wall_loss == Approx(6.9));
+    CHECK(radio.thing_loss == 0);
+    CHECK_FALSE(radio.mesh);
+    // Events can send to whoever is there.
+    REQUIRE(scenario.events.computers.size() == 2);
+    CHECK(scenario.events.computers[0].name == "pc");
+    CHECK(scenario.events.computers[0].address == 0x0a0000fe);
     CHECK(radio.carrier_sense == wifi::WifiSettings{}.carrier_sense);
     CHECK(scenario.network->latency == Approx(5e-4));
     CHECK(scenario.network->access_point->at(1) == Approx(-0.5));
@@ -96,6 +103,12 @@ TEST_CASE("what the radio's table sets, and who has one", "[network]") {
     refused(table + "power = \"40 dBm\"\n", "power is out of range");
     refused(table + "power = \"4 dB\"\n", "is a ratio of powers");
     refused(table + "attempts = 0\n", "attempts");
+    refused(table + "thing_loss = \"101 dB\"\n", "thing_loss is out of range");
+    refused(table + "route_every = \"1 ms\"\n", "route_every is out of range");
+    refused(wifi + "access_point = [\"0 m\", \"0 m\"]\n[network.wifi]\nmesh = true\n",
+            "a mesh has no access point");
+    refused(robot(0, "") + wifi + "[[event]]\nat = \"1 s\"\nsend = \"pc\"\ntext = \"x\"\n",
+            "there is no computer on a network that could be 'pc'");
     refused(table + "powr = \"4 dBm\"\n", "powr");
     refused(wifi + "rate = \"11 Mbit/s\"\n", "a radio has rates of its own");
     refused(wifi + "[[host]]\n" + kProgram, "host0 has neither a radio nor a wire");

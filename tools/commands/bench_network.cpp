@@ -29,6 +29,7 @@ struct NetworkOptions {
     std::filesystem::path firmware;
     std::vector<std::string> forwarder;
     std::string standard = "g";
+    double rate = 0;
     std::uint64_t seed = 1;
     std::filesystem::path out = "out/pause_times";
 };
@@ -67,6 +68,7 @@ TeamSpec team_of(const NetworkOptions& options) {
         throw InputError("", "bench network", "there is no network.hex beside this program",
                          "the firmware folder, or --firmware IMAGE");
     spec.standard = options.standard;
+    spec.rate = options.rate;
     spec.seconds = options.seconds;
     return spec;
 }
@@ -143,6 +145,11 @@ void declare_bench_network(Command& bench, int& status) {
         ->type_name("WORD");
     command->add_option("--standard", options->standard, "of the radio: b or g (default g)")
         ->check(one_of({"b", "g"}));
+    command
+        ->add_option("--rate", options->rate,
+                     "of frames to one station, one of the standard's (default: by the power that arrives)")
+        ->check(number_between(1, 54))
+        ->type_name("MBIT_S");
     command->add_option("--seed", options->seed, "of what is drawn")
         ->check(count_up_to(1'000'000'000))
         ->type_name("N");

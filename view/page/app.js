@@ -6,6 +6,7 @@ import { FaultForm } from './fault_form.js';
 import { Live, sensorsAgainAfter } from './live.js';
 import { Events, Leds, belowThreshold, ircomWord, parseBeams, parsePoses, parseSensors, parseTrails, Tracked } from './model.js';
 import { palette } from './palette.js';
+import { NetworkPart } from './network.js';
 import { Panel } from './panel.js';
 import { makeSource } from './source.js';
 import { Terminal } from './terminal.js';
@@ -53,6 +54,7 @@ class App {
     const serial = head.live ? this.possible.places.filter((place) => place.on === 'uart') : (head.report || {}).serial;
     this.terminal = new Terminal(element('terminal-part'), this.source.serial ? serial || [] : [], this.source,
       this.live ? (request) => this.drive(request) : null, redraw);
+    this.network = new NetworkPart(element('network-part'), this.source, this.live ? (request) => this.drive(request) : null);
     this.fill();
     this.listen();
     this.theme();
@@ -426,8 +428,10 @@ class App {
       beams: element('beams').checked, tracker: element('tracker').checked, persist: Math.max(0.1 * speed, 0.02), selected: this.robot });
     this.timeline.draw(colours);
     // Positions come each 100 ms, bytes at once.
-    this.terminal.draw(this.live && this.live.atEdge ? Math.max(run.now, this.live.state.time_s) : run.now);
+    const known = this.live && this.live.atEdge ? Math.max(run.now, this.live.state.time_s) : run.now;
+    this.terminal.draw(known);
     this.cameras.draw(run.now);
+    this.network.draw(known);
     this.panel.draw(colours, Math.max(0, this.timeline.from), Math.min(this.timeline.to, run.duration));
     if (!(time - this.recentAt < recentMilliseconds)) {
       this.recentAt = time;

@@ -20,6 +20,7 @@ class ServerSource {
   cameras() { return this.json('cameras'); }
   picture(camera, frame) { return this.bytes(`picture?of=${camera},${frame}`); }
   serial(from, link) { return this.json(`serial?from=${from},${encodeURIComponent(link)}`); }
+  network(time) { return this.json(`network?at=${Math.round(time * 1000)}`); }
   texts(numbers) { return this.json(`texts?numbers=${numbers.join(',')}`); }
   async find(text) { return new Uint32Array(await this.bytes(`find?text=${encodeURIComponent(text)}`)); }
 }

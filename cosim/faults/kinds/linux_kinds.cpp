@@ -1,5 +1,6 @@
 // What can happen to a Linux program: in its calls on the serial port and the I2C adapter, and to its
-// process. Error numbers of the I2C adapter: Linux, Documentation/i2c/fault-codes.rst.
+// process. Error numbers of the I2C adapter: Linux, Documentation/i2c/fault-codes.rst. How long a name is
+// asked for: glibc's resolver, resolv.conf(5), options timeout and attempts.
 
 #include "cosim/faults/kinds/kind_table.h"
 
@@ -9,6 +10,7 @@ namespace {
 constexpr double kLongestOfCall = 3600.0;  // s
 constexpr double kMostBytes = 4096;
 constexpr double kMostStarving = 1e6;
+constexpr double kResolverTimeout = 5.0, kResolverAttempts = 2, kMostAttempts = 10;
 constexpr std::string_view kTtyErrors = "EAGAIN|EINTR|EIO|ENXIO|ENODEV|ENOMEM";
 constexpr std::string_view kI2cErrors =
     "EIO|EAGAIN|EBUSY|EINVAL|ENODEV|ENOMEM|ENXIO|EOPNOTSUPP|EPROTO|EREMOTEIO|ETIMEDOUT";
@@ -36,6 +38,9 @@ std::vector<KindInfo> linux_kinds() {
         kind("starve", Style::Hold, {{"factor", Unit::Number, 1.0, kMostStarving, {}, true}}),
         kind("kill", Style::Times, {text("run", "ends|goes_on")}),
         kind("restart", Style::Times, {{"down", Unit::Time, 0.0, kLongestOfCall, 0.0}}),
+        kind("dns_silence", Style::Hold,
+             {{"timeout", Unit::Time, 0.001, kLongestOfCall, kResolverTimeout},
+              {"attempts", Unit::Integer, 1, kMostAttempts, kResolverAttempts}}),
     };
 }
 

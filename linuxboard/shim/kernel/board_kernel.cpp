@@ -141,6 +141,7 @@ void BoardKernel::call(const Request& request, std::string_view data) {
         return;
     }
     case Op::Poll:
+    case Op::Resolve:
         break;
     case Op::Hello:
     case Op::Sync:
@@ -169,6 +170,11 @@ void BoardKernel::call(const Request& request, std::string_view data) {
     Waiting waiting{request, std::string(data), {}, 0, now};
     if (request.op == Op::Send && !join_pieces(request, waiting.data)) return;
     if (!faults_.empty() && suffers(waiting, now)) return;
+    if (request.op == Op::Resolve) {
+        const LinuxFaults::Resolution resolution = faults_.resolve(now, data);
+        waiting.request.deadline = resolution.until;
+        waiting.progress = resolution.failed ? 1 : 0;
+    }
     if (request.op == Op::Transfer) {
         submit_transfer(request, data);
         Waiting transfer{request, {}, {}, 0, now};
@@ -231,6 +237,8 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
             waiting.since = now;
         }
         return now >= waiting.since + request.b * cosim::kMicrosecond ? done(0) : false;
+    case Op::Resolve:
+        return now >= request.deadline ? done(0, waiting.progress != 0 ? EAGAIN : 0) : false;
     case Op::Insert:
         tty_.insert(static_cast<char>(request.a), now);
         return done(0);
@@ -392,6 +400,7 @@ Time BoardKernel::wake_time(const Waiting& waiting) const {
     if (is_socket_call(waiting.request.op)) return socket_wake_time(waiting);
     switch (waiting.request.op) {
     case Op::Poll:
+    case Op::Resolve:
         return waiting.request.deadline;
     case Op::Read: {
         const termios& settings = tty_.settings();
@@ -447,6 +456,8 @@ Time BoardKernel::device_completion(const Waiting& waiting, Time transfers_end) 
     switch (waiting.request.op) {
     case Op::Read:
         return std::min(next, tty_.next_input());
+    case Op::Resolve:
+        return next;
     case Op::Transfer:
         return std::min(next, transfers_end);
     case Op::Ioctl:

@@ -123,6 +123,7 @@ bool BoardKernel::attempt_socket(std::uint32_t thread, Waiting& waiting, Time no
             if (waits && !late) return false;
             error = some ? 0 : EAGAIN;
         }
+        if (some && error != 0) stack.keep_error(socket, error);  // for the next call, as Linux does
         return done(static_cast<std::int64_t>(waiting.progress), some ? 0 : error);
     }
     case Op::Receive:

@@ -64,9 +64,9 @@ bool same(const termios& a, const termios& b) {
 
 std::optional<LinuxFaults::Kind> LinuxFaults::kind_of(std::string_view name) {
     constexpr std::array<std::string_view, static_cast<std::size_t>(kLast) + 1> kNames{
-        "read_error",      "write_error",  "short_read", "short_write",
-        "termios_refused", "termios_baud", "i2c_error",  "hang_up",
-        "pause",           "starve",       "kill",       "restart"};
+        "read_error",   "write_error", "short_read", "short_write", "termios_refused",
+        "termios_baud", "i2c_error",   "hang_up",    "pause",       "starve",
+        "kill",         "restart",     "dns_silence"};
     const auto* found = std::find(kNames.begin(), kNames.end(), name);
     if (found == kNames.end()) return std::nullopt;
     return static_cast<Kind>(found - kNames.begin());
@@ -164,6 +164,35 @@ termios LinuxFaults::configure(Time now, const termios& before, const termios& w
         }
     }
     return effective;
+}
+
+bool LinuxFaults::concern_names(const std::vector<CarriedFault>& faults) {
+    return std::any_of(faults.begin(), faults.end(), [](const CarriedFault& fault) {
+        return kind_of(fault.spec.kind) == Kind::DnsSilence;
+    });
+}
+
+/// A resolver asks, and asks again when an answer does not come in time: the first question outside of all
+/// windows is answered.
+LinuxFaults::Resolution LinuxFaults::resolve(Time now, std::string_view name) {
+    Resolution result{now, false};
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+        CarriedFault& fault = faults_[i];
+        if (kinds_[i] != Kind::DnsSilence || result.failed || !fault.trigger.open(result.until)) continue;
+        const auto& parameters = fault.spec.parameters;
+        const Time begin = result.until, timeout = parameters.time("timeout");
+        int left = static_cast<int>(parameters.number("attempts"));
+        while (left > 0 && fault.trigger.open(result.until)) {
+            result.until = cosim::later(result.until, timeout);
+            --left;
+        }
+        result.failed = left == 0;
+        fault.fired(now, ++calls_,
+                    fmt::format("{} is not answered for {:.3f} s{}", name,
+                                cosim::to_seconds(result.until - begin),
+                                result.failed ? "" : " and then is"));
+    }
+    return result;
 }
 
 Time LinuxFaults::next() const {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <termios.h>
@@ -51,6 +52,15 @@ class LinuxFaults {
     /// The port's bit rate over the one of its settings, as the last configure() left it.
     double rate_factor() const { return rate_factor_; }
 
+    /// What becomes of a name that the program asks for.
+    struct Resolution {
+        cosim::Time until = 0;  ///< it waits so long
+        bool failed = false;
+    };
+    Resolution resolve(cosim::Time now, std::string_view name);
+    /// Some fault concerns names of computers.
+    static bool concern_names(const std::vector<cosim::CarriedFault>& faults);
+
     /// When something next happens to the process; kNever: nothing more.
     cosim::Time next() const;
     /// What is due at `now`; `runs`: there is a process that it can happen to.
@@ -72,8 +82,9 @@ class LinuxFaults {
         Starve,
         Kill,
         Restart,
+        DnsSilence,
     };
-    static constexpr Kind kLast = Kind::Restart;
+    static constexpr Kind kLast = Kind::DnsSilence;
     static std::optional<Kind> kind_of(std::string_view name);
 
     CallDamage strike(cosim::Time now, std::size_t bytes, Kind error, Kind shortens, const char* call);

@@ -152,8 +152,11 @@ void NetworkStack::advance(Time now) {
     }
     for (const int id : due) {
         Socket& socket = at(id);
+        const bool was_open = socket.tcp->synchronised();
         socket.tcp->advance(now);
         flush(socket, now);
+        // Nobody took the answer: it leaves the backlog.
+        if (!was_open && socket.tcp->state() == TcpConnection::State::Closed) socket.listener = -1;
     }
     forget_closed();
 }

@@ -12,6 +12,7 @@
 #include "linuxboard/shim/network/network_spec.h"
 #include "linuxboard/shim/network/socket.h"
 
+#include <cerrno>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -61,6 +62,10 @@ class NetworkStack {
     bool listening(int id) const { return at(id).listening; }
     /// `taken`: octets; EAGAIN: none for now.
     int send(int id, std::optional<Endpoint> to, std::string_view data, std::size_t& taken, cosim::Time now);
+    /// The next call that takes one fails with it.
+    void keep_error(int id, int error) {
+        if (error != EPIPE) at(id).error = error;
+    }
     struct Received {
         std::string data;
         Endpoint from{};

@@ -221,21 +221,11 @@ void NetworkStack::opened_by(Socket& listener, const TcpSegment& syn, const IpPa
 void NetworkStack::refuse(const TcpSegment& segment, const IpPacket& packet, Time now) {
     if ((segment.flags & protocols::kRst) != 0) return;
     ++counts_.no_port;
-    TcpSegment reset;
-    reset.from_port = segment.to_port;
-    reset.to_port = segment.from_port;
-    reset.flags = protocols::kRst;
-    if ((segment.flags & protocols::kAck) != 0) {
-        reset.sequence = segment.acknowledged;
-    } else {
-        reset.flags |= protocols::kAck;
-        reset.acknowledged = segment.sequence + segment.length();
-    }
     IpPacket answer;
     answer.from = packet.to;
     answer.to = packet.from;
     answer.protocol = protocols::kTcp;
-    answer.payload = protocols::encode_tcp(reset, answer.from, answer.to);
+    answer.payload = protocols::encode_tcp(protocols::reset_for(segment), answer.from, answer.to);
     emit(std::move(answer), now);
 }
 

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "base/shipped_files.h"
 #include "cosim/core/cores.h"
+#include "linuxboard/shim/kernel/linux_faults.h"
 #include "linuxboard/shim/node/last_line.h"
 #include "linuxboard/shim/node/program_file.h"
 
@@ -217,6 +218,7 @@ void Launcher::prepare_page() {
     if (!spec_.cameras.empty()) map_video();
     if (!spec_.network) return;
     page_->networked = 1;
+    page_->asks_for_names = LinuxFaults::concern_names(spec_.faults) ? 1 : 0;
     page_->network_prefix = static_cast<std::uint8_t>(spec_.network->prefix);
     page_->network_address = place_of(*spec_.network).address;
     for (const NetworkName& one : spec_.network->names) {

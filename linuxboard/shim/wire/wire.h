@@ -15,7 +15,7 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 8;
+inline constexpr std::uint32_t kVersion = 9;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -53,6 +53,8 @@ enum class Op : std::uint32_t {
     Map,  ///< handle (camera), a, b = offset and length to be mapped; result: where in the shared memory
     VideoRead,  ///< handle (camera), a = most bytes; data: where they are in the shared memory (uint64)
     Insert,     ///< handle, a = a byte that is as if it had come in (TIOCSTI)
+    Resolve,    ///< data: a computer's name, for a board whose names a fault may keep from it; fails with
+                ///< EAGAIN
     // Sockets; addresses are SocketAddress
     Socket,       ///< a = 1: a stream, 0: datagrams; result: handle
     Bind,         ///< handle, data: address
@@ -279,6 +281,7 @@ struct Page {
     // The network that the board is on.
     std::uint8_t networked = 0;  ///< 0: sockets are the host's
     std::uint8_t network_prefix = 0;
+    std::uint8_t asks_for_names = 0;  ///< 1: names of other computers are asked for (Op::Resolve)
     std::uint32_t network_address = 0;
     std::uint32_t host_count = 0;
     HostEntry hosts[kMaximumHosts];

@@ -14,6 +14,7 @@ constexpr ActionKey kPut[]{{"to", List}, {"heading"}};
 constexpr ActionKey kSet[]{{"grey"}, {"ambient"}, {"intensity"}, {"level"}, {"reflectivity"}, {"charge"}, {"ground"}};
 constexpr ActionKey kSelect[]{{"position", Integer}};
 constexpr ActionKey kTune[]{{"parameter"}, {"value"}};
+constexpr ActionKey kSend[]{{"text"}, {"port", Integer}};
 constexpr ActionKey kRemote[]{{"key", Integer}, {"address", Integer}, {"hold"}};
 
 constexpr ActionForm kForms[]{
@@ -37,6 +38,8 @@ constexpr ActionForm kForms[]{
     {"unset", "unset ROBOT", "its ground sensors see the floor again", {}},
     {"tune", "tune ROBOT parameter NAME value VALUE",
      "changes a physical parameter of a robot: proximity.gain3, ground.noise, robot.drift_x, ...", kTune},
+    {"send", "send COMPUTER text \"TEXT\" [port N]",
+     "a UDP datagram for a program of a computer on the network: port 7701 is that of puckloop-netmanager", kSend},
 };
 
 constexpr ActionKey kWall[]{{"name"}, {"from", List}, {"to", List}, {"thickness"}, {"height"}, {"reflectivity"}};

@@ -135,7 +135,7 @@ std::string toml_string(std::string_view text) {
 
 std::string plain_value(const TomlValue& value, const ActionKey& key, std::span<const ActionKey> keys) {
     if (const auto* text = std::get_if<std::string>(&value.data))
-        return key.name == "name" ? in_command(*text, keys) : *text;
+        return key.name == "name" || key.name == "text" ? in_command(*text, keys) : *text;
     if (const auto* items = std::get_if<TomlArray>(&value.data)) {
         std::string list;
         for (const TomlValue& item : *items)

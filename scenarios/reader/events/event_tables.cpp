@@ -22,6 +22,7 @@ using physics::Verb;
 
 constexpr double kLatestEvent = 86'400.0 * 30;  // s, as a run
 constexpr std::int64_t kMostTimes = 1'000'000;
+constexpr int kManagerPort = 7701;  // of puckloop-netmanager --control
 
 /// To the microsecond.
 cosim::Time read_time(Reader& reader, std::string_view key, double seconds) {
@@ -138,6 +139,10 @@ Action read_action(Reader& reader, const TomlValue& table, int line) {
     case Verb::Tune:
         action.property = reader.text("parameter");
         action.value = reader.quantity("value", dimension_of_parameter(action.property));
+        break;
+    case Verb::Send:
+        action.text = reader.text("text");
+        action.number = static_cast<int>(reader.integer("port", kManagerPort, 1, 65'535));
         break;
     case Verb::Remove:
     case Verb::Lift:

@@ -159,6 +159,18 @@ void check_receiver(Reader& reader, const FaultPlace& place, const FaultSpec& fa
         reader.fail("to", fmt::format("'{}' receives nothing of its own", to), "another one");
 }
 
+/// What a fault of the network needs there.
+void check_network(Reader& reader, const KindInfo& kind, const FaultSpec& fault, const Scenario& scenario) {
+    if (kind.name == "dns_silence" && !scenario.network)
+        reader.fail("kind", "no names are asked for without a network", "[network]");
+    if (kind.name != "access_point_away") return;
+    if (!scenario.network->access_point)
+        reader.fail("kind", "the network has no access point that could be away",
+                    "access_point in [network], with mode = \"wifi\"");
+    if (!fault.from.empty())
+        reader.fail("from", "an access point is away for all", "no 'from'; or loss from one computer");
+}
+
 const KindInfo& find_kind(Reader& reader, const FaultPlace& place) {
     const std::string name = reader.text("kind", "drop");
     if (const KindInfo* kind = cosim::find_kind(name, place.kind)) return *kind;
@@ -197,6 +209,7 @@ FaultSpec read_fault(Reader& reader, const Scenario& scenario) {
         kind.name == cosim::kFlashKind && !image.empty())
         fault.set("image", found_image(reader, image));
     check_receiver(reader, place, fault);
+    check_network(reader, kind, fault, scenario);
     fault.name = reader.text("name", "");
     if (fault.name.find_first_of(",\n\"") != std::string::npos)
         reader.fail("name", "a name holds a comma, a quote or a line's end", "a plain name");

@@ -1,6 +1,7 @@
 // When things happen: exact times, conditions, repetition, and whatever the grants are.
 
 #include "base/error.h"
+#include "protocols/ip_packet.h"
 #include "protocols/rc5.h"
 #include "tests/physics/events/plans.h"
 
@@ -124,6 +125,67 @@ TEST_CASE("signals to the board leave at their exact time") {
     const auto report = nlohmann::json::parse(node->finish());
     CHECK(report.at("events").back().at("done") == false);
     CHECK(report.at("events").back().at("why") == "the key before is held until 0.427587 s");
+}
+
+TEST_CASE("datagrams leave at their exact time for the computer that is named") {
+    constexpr Time kDuration = 100 * kMillisecond;
+    const auto send = [](const std::string& computer, const std::string& text, int port) {
+        Action result = action(Verb::Send, computer);
+        result.text = text;
+        result.number = port;
+        return result;
+    };
+    EventPlan plan;
+    plan.computers = {{"manager", 0x0a0000fe}, {"robot0", 0x0a000001}};
+    plan.events = {at(0, send("manager", "loss 0.5", 7701)),
+                   at(20'001 * kMicrosecond, send("robot0", "x", 9)), at(50 * kMillisecond, select(3))};
+    const auto sent = [&](Time slice) {
+        WorldNode node(room(), plan_from_json(to_json(plan)), nullptr);
+        std::vector<std::string> lines;
+        REQUIRE(node.ports().back().name == "messages");
+        const auto port = static_cast<cosim::PortIndex>(node.ports().size() - 1);
+        CHECK(node.lookahead(port) < cosim::kNever);
+        for (const Message& message : run_node(node, {}, kDuration, slice)) {
+            const auto* packet = std::get_if<cosim::Packet>(&message.payload);
+            CHECK((packet != nullptr) == (message.port == port));
+            if (packet == nullptr) continue;
+            const auto read = protocols::decode_ip(packet->octets.view());
+            REQUIRE(read);
+            const auto datagram = protocols::decode_udp(*read);
+            REQUIRE(datagram);
+            lines.push_back(std::to_string(message.time / kMicrosecond) + " " + protocols::to_text(read->to) +
+                            ":" + std::to_string(datagram->to_port) + " " + datagram->data);
+        }
+        return lines;
+    };
+    const auto lines = sent(7 * kMillisecond);
+    CHECK(lines == std::vector<std::string>{"1 10.0.0.254:7701 loss 0.5", "20001 10.0.0.1:9 x"});
+    CHECK(sent(kDuration) == lines);
+    // Who is not there, ports and texts that cannot be.
+    const auto problem = [&](Action wrong) {
+        EventPlan other = plan;
+        other.events = {at(0, std::move(wrong))};
+        try {
+            check_events(other, room());
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK_THAT(problem(send("nobody", "x", 1)),
+               Catch::Contains("there is no 'nobody' on the network (expected manager, robot0)"));
+    CHECK_THAT(problem(send("manager", "x", 65'536)), Catch::Contains("port = 65536 is out of range"));
+    CHECK_THAT(problem(send("manager", "", 1)), Catch::Contains("a text of 0 octets"));
+    CHECK_THAT(problem(send("manager", std::string(1001, 'x'), 1)), Catch::Contains("a text of 1001 octets"));
+    plan.computers.clear();
+    CHECK_THAT(problem(send("manager", "x", 1)), Catch::Contains("there is no computer on a network"));
+    // Nobody waits for a world that will never send anything.
+    plan.computers = {{"manager", 0x0a0000fe}};
+    plan.events.clear();
+    const WorldNode quiet(room(), plan, nullptr);
+    const auto port = static_cast<cosim::PortIndex>(quiet.ports().size() - 1);
+    CHECK(quiet.earliest_output(port) == cosim::kNever);
+    CHECK(quiet.lookahead(port) == cosim::kNever);
 }
 
 TEST_CASE("conditions come true at the step at which they hold, and events follow each other") {

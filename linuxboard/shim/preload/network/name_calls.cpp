@@ -1,5 +1,6 @@
 // Names of computers: getaddrinfo() and its older kin know the computers of the run's network and no others;
-// no name server is asked.
+// no name server is asked. Where a fault is about names, those of other computers are as if one were:
+// /etc/hosts does not have them, and the node decides whether an answer comes.
 
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -12,6 +13,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -52,6 +54,7 @@ int open_network_file(const char* path) {
     if (hosts) {
         text = "127.0.0.1\tlocalhost\n";
         for (std::uint32_t i = 0; i < page().host_count; ++i) {
+            if (page().asks_for_names != 0 && page().hosts[i].address != page().network_address) continue;
             char number[INET_ADDRSTRLEN];
             const in_addr address{htonl(page().hosts[i].address)};
             inet_ntop(AF_INET, &address, number, sizeof number);
@@ -95,6 +98,12 @@ int find_service(const char* name, int flags, int type, Service& service) {
     return 0;
 }
 
+constexpr std::size_t kLongestName = 253;  // RFC 1035
+
+bool is_of_board(std::uint32_t address) {
+    return address == INADDR_LOOPBACK || address == page().network_address;
+}
+
 int find_node(const char* node, int flags, std::uint32_t& address) {
     if (node == nullptr) {
         address = (flags & AI_PASSIVE) != 0 ? INADDR_ANY : INADDR_LOOPBACK;
@@ -103,6 +112,12 @@ int find_node(const char* node, int flags, std::uint32_t& address) {
     if (is_numeric(node, address)) return 0;
     if ((flags & AI_NUMERICHOST) != 0) return EAI_NONAME;
     address = address_of_name(node);
+    if (page().asks_for_names != 0 && !is_of_board(address)) {
+        wire::Request request;
+        request.op = wire::Op::Resolve;
+        if (device_call(request, node, std::min<std::size_t>(std::strlen(node), kLongestName)) < 0)
+            return EAI_AGAIN;
+    }
     if (address != 0) return 0;
     note("no computer of the network has the name '%.100s'", node);
     return EAI_NONAME;
@@ -229,8 +244,9 @@ int find_host(const char* name, int family, hostent* entry, char* buffer, std::s
     charge(page().charges.device);
     *result = nullptr;
     std::uint32_t address = 0;
-    if (family != AF_INET || find_node(name, 0, address) != 0) {
-        *error = HOST_NOT_FOUND;
+    const int failed = family == AF_INET ? find_node(name, 0, address) : EAI_NONAME;
+    if (failed != 0) {
+        *error = failed == EAI_AGAIN ? TRY_AGAIN : HOST_NOT_FOUND;
         return 0;
     }
     const int full = fill(name, address, entry, buffer, size);

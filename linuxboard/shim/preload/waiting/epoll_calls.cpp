@@ -26,7 +26,7 @@
 using namespace puckloop::shim;
 
 namespace {
-constexpr int kMostWatches = 1000;
+constexpr int kMostWatches = kMostPolled;
 
 struct Watch {
     int epoll_fd = -1;
@@ -62,6 +62,7 @@ int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) 
     if (watch == nullptr) watch = find_watch(-1, -1);
     if (watch == nullptr && watch_end < kMostWatches) watch = &watches[watch_end++];
     if (watch == nullptr) {
+        note("the program watches more than %d sockets and devices", kMostWatches);
         errno = ENOSPC;
         return -1;
     }

@@ -8,6 +8,9 @@
 
 namespace puckloop::shim {
 
+/// Sockets and devices that one wait can be for.
+inline constexpr std::size_t kMostPolled = wire::kMaximumData / sizeof(wire::PollEntry);
+
 // poll_calls.cpp
 /// An entry of poll(). `seen` is of an edge-triggered socket, as in wire::PollEntry.
 struct PollItem {

@@ -58,9 +58,14 @@ int poll_devices(PollItem* entries, nfds_t count, Time deadline) {
     Room<nfds_t> indices(count);
     std::size_t total = 0;
     bool only_ttys = true;
-    for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
+    for (nfds_t i = 0; i < count; ++i) {
         const OpenFile* file = open_file(entries[i].fd);
         if (file == nullptr) continue;
+        if (total == kMostPolled) {
+            note("the program waits for more than %d sockets and devices; the others are not looked at",
+                 static_cast<int>(kMostPolled));
+            break;
+        }
         if (file->kind == OpenFile::Kind::Random) {
             entries[i].revents = static_cast<short>(entries[i].events & (POLLIN | POLLOUT));
             continue;
