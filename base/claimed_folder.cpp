@@ -51,6 +51,17 @@ void write_mark(const fs::path& file, const std::set<std::string>& names) {
 
 }  // namespace
 
+void refuse_to_empty(const fs::path& folder, const std::string& mark, std::string_view expected) {
+    std::error_code failed;
+    const fs::file_status there = fs::symlink_status(folder, failed);
+    if (!fs::exists(there)) return;
+    if (!fs::is_directory(there))
+        throw InputError(folder.string(), "", "is no folder, and would be replaced by one", expected);
+    if (!holds_only_results(folder, mark))
+        throw InputError(folder.string(), "", "holds other things than a run's results, and would be emptied",
+                         expected);
+}
+
 std::set<std::string> listed_names(const std::string& text) {
     std::set<std::string> names;
     std::istringstream lines(text);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace puckloop {
@@ -22,6 +23,10 @@ void refuse_foreign_results(const std::filesystem::path& folder, const std::stri
 
 /// Whether all that is in `folder` is its mark and what that lists.
 bool holds_only_results(const std::filesystem::path& folder, const std::string& mark);
+
+/// InputError for what is there at `folder` and would be lost if it were emptied for a run's results: a file,
+/// a link, a folder with other things. `expected`: what to give in its place.
+void refuse_to_empty(const std::filesystem::path& folder, const std::string& mark, std::string_view expected);
 
 /// Names in the text of a mark, without "./".
 std::set<std::string> listed_names(const std::string& text);

@@ -16,7 +16,7 @@
 #include "run/snapshots/snapshot_plan.h"
 
 #include "base/error.h"
-#include "cosim/faults/flash.h"
+#include "cosim/faults/spec/flash.h"
 #include "cosim/resume/run_snapshot.h"
 #include "cosim/trace/trace_csv.h"
 #include "physics/render/arena_file.h"

@@ -286,10 +286,7 @@ Verdict replay(const Results& results, int id, const fs::path& folder) {
     if (found == results.results.end())
         throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
                          "a case of results.csv that was run");
-    std::error_code failed;
-    if (fs::exists(fs::symlink_status(folder, failed)) && !holds_only_results(folder, tools::kRunMark))
-        throw InputError(folder.string(), "", "holds other things than a run's results, and would be emptied",
-                         "--out with a folder of its own");
+    refuse_to_empty(folder, tools::kRunMark, "--out with a folder of its own");
     // Whole, not from a snapshot: a second opinion.
     return run_case(results.campaign, found->one, folder, {boots_folder(results.out)},
                     read_profile(nominal_folder(results.out, found->one.seed)));

@@ -34,10 +34,7 @@ RunResult run_again(const Findings& findings, int id, const fs::path& folder) {
     if (run == runs.end() || !findings.results.contains(id))
         throw InputError(findings.out.string(), fmt::format("run {}", id), "there is no result of it",
                          "a run of results.csv");
-    std::error_code failed;
-    if (fs::exists(fs::symlink_status(folder, failed)) && !holds_only_results(folder, tools::kRunMark))
-        throw InputError(folder.string(), "", "holds other things than a run's results, and would be emptied",
-                         "--out with a folder of its own");
+    refuse_to_empty(folder, tools::kRunMark, "--out with a folder of its own");
     return execute(findings.experiment, *run, folder, findings.out / "boots");
 }
 

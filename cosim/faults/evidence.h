@@ -2,7 +2,7 @@
 // That a fault fired: how often, when and on what. The same in every placement.
 
 #include "cosim/core/time.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstdint>
 #include <deque>

@@ -2,7 +2,7 @@
 // Faults that a node carries out travel in its description, and what became of them in its report.
 
 #include "cosim/faults/evidence.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 #include "cosim/faults/trigger.h"
 
 #include <nlohmann/json_fwd.hpp>

@@ -6,9 +6,9 @@
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
 #include "cosim/faults/evidence.h"
-#include "cosim/faults/fault_kind.h"
-#include "cosim/faults/fault_spec.h"
 #include "cosim/faults/kinds/kind_table.h"
+#include "cosim/faults/spec/fault_kind.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstdint>
 #include <memory>

@@ -2,7 +2,7 @@
 // Which frames of one direction of a link a fault is meant for, by what they carry and where they are.
 
 #include "cosim/core/message.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstdint>
 #include <limits>

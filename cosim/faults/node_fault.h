@@ -3,7 +3,7 @@
 
 #include "base/fields/json_value.h"
 #include "cosim/faults/fault_json.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "cosim/core/time.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstdint>
 #include <string_view>

@@ -3,7 +3,7 @@
 // bytes.
 
 #include "cosim/core/time.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstdint>
 #include <optional>

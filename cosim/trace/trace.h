@@ -5,7 +5,7 @@
 #include "cosim/core/link.h"
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
-#include "cosim/faults/fault_kind.h"
+#include "cosim/faults/spec/fault_kind.h"
 
 #include <cstdint>
 #include <tuple>

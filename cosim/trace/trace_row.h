@@ -16,7 +16,7 @@
 
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
-#include "cosim/faults/fault_kind.h"
+#include "cosim/faults/spec/fault_kind.h"
 
 #include <string>
 #include <string_view>

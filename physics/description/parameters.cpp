@@ -66,8 +66,9 @@ void Parameters::set(std::string_view name, double value) {
     int index = -1;
     const auto& info = require(name, index);
     if (!std::isfinite(value) || value < info.min || value > info.max)
-        throw std::invalid_argument(fmt::format("parameter {} = {} is out of range ({} to {} {})", name,
-                                                value, info.min, info.max, info.unit));
+        throw std::invalid_argument(
+            fmt::format("parameter {} = {} is out of range ({} to {}{})", name, value, info.min, info.max,
+                        info.unit == std::string_view("1") ? "" : std::string(" ") + info.unit));
     double* first = info.place(*this);
     if (index >= 0)
         first[index] = value;

@@ -66,6 +66,13 @@ Names names_of(const std::string& file, bool avr) {
     return {std::move(image.symbols), std::move(image.lines)};
 }
 
+void check_fits(std::uint64_t value, int bits) {
+    constexpr int kAll = 64;
+    if (bits < kAll && (value >> bits) != 0)
+        throw InputError("", "value", fmt::format("{} does not fit into {} bits", value, bits),
+                         fmt::format("at most 0x{:x}", (std::uint64_t{1} << bits) - 1));
+}
+
 }  // namespace
 
 BoardAccess::BoardAccess(DrivenNode& node, const std::string& file, bool avr)
@@ -295,12 +302,14 @@ void BoardAccess::write_register(std::string name, std::uint64_t value) {
     const auto registers = chip.registers();
     for (std::size_t i = 0; i < registers.size(); ++i) {
         if (upper(registers[i].name) != name) continue;
+        check_fits(value, registers[i].bits);
         if (!chip.write_register(i, value))
             throw InputError("", std::string(node_.name()), fmt::format("{} cannot be written", name));
         return;
     }
     const ordered_json there = read_register(name);
     std::vector<std::uint8_t> bytes;
+    check_fits(value, there.at("bits").get<int>());
     for (int bit = 0; bit < there.at("bits").get<int>(); bit += 8)
         bytes.push_back(static_cast<std::uint8_t>(value >> bit));
     const auto address = static_cast<std::uint16_t>(there.at("address").get<std::uint32_t>());
@@ -323,6 +332,7 @@ void BoardAccess::write(const json& request) {
         if (place.bytes > kWidest)
             throw InputError("", "value", fmt::format("{} bytes are no number", place.bytes),
                              "data in hexadecimal");
+        if (value >= 0) check_fits(static_cast<std::uint64_t>(value), static_cast<int>(8 * place.bytes));
         for (std::uint32_t i = 0; i < place.bytes; ++i)
             bytes.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
     }

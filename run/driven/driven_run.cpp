@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "base/version/version.h"
-#include "cosim/faults/flash.h"
-#include "cosim/faults/typed_bytes.h"
+#include "cosim/faults/spec/flash.h"
+#include "cosim/faults/spec/typed_bytes.h"
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
 #include "run/control/control_place.h"
@@ -137,10 +137,7 @@ DrivenRun::DrivenRun(const RunSetup& setup, const RunRequest& request, Planner p
 std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
     NodeDescription description = decode(text);
     if (!has_board(description)) return tools::make_node(description);
-    const BoardFields there = board_fields(description);
-    there.firmware = images_.as_it_was(there.firmware);
-    if (auto* tam = std::get_if<tam::TamSpec>(&description.kind))
-        tam->boot_loader = images_.as_it_was(tam->boot_loader);
+    description = with_images(std::move(description));
     // At power-up: what it was in a snapshot is loaded into it.
     auto node = std::make_unique<DrivenNode>(make_board(description));
     const BoardFields fields = board_fields(description);
@@ -206,11 +203,13 @@ void DrivenRun::stand(const TakeSnapshot& take) {
 }
 
 bool DrivenRun::returned() {
+    // A command that the world had not heard yet where the run begins again is given there once more.
+    const bool begins = std::exchange(begins_again_, false);
     for (const Deed& deed : deeds_) {
-        if (deed.time != now_) continue;
-        if (!deed.write.is_null())
-            board(deed.write).write(deed.write);
-        else if (!heard_by_world(deed.time, return_->to))
+        const bool now = deed.time == now_;
+        if (now && !deed.write.is_null()) board(deed.write).write(deed.write);
+        if (deed.write.is_null() && (now || (begins && deed.time < now_)) &&
+            !heard_by_world(deed.time, return_->to))
             world_.act(deed.command);
     }
     if (now_ < return_->to) {
@@ -227,11 +226,15 @@ bool DrivenRun::returned() {
     return true;
 }
 
-Time DrivenRun::next_look() const {
+Time DrivenRun::next_look() {
     Time next = now_ + step_->every;
-    // Just behind the begin of the next instruction, which is then executed whole.
-    if (step_->board != nullptr && !step_->board->chip().asleep())
-        next = std::max(now_, step_->board->next_instruction()) + 1;
+    // Just behind the begin of the next instruction, which is then executed whole; of a board that hangs it
+    // should have been, and is not.
+    if (step_->board != nullptr && !step_->board->chip().asleep()) {
+        const Time begin = step_->board->next_instruction();
+        if (begin > step_->looked) next = begin + 1;
+        step_->looked = std::max(now_, begin);
+    }
     return std::min(step_->until, next);
 }
 
@@ -376,7 +379,9 @@ void DrivenRun::begin_step(const json& request) {
         step.every = request.contains("every") ? time_of(request, "every") : cosim::kMillisecond;
         if (step.every < kFinest) throw InputError("", "every", "is too short", "1 us or more");
         const json& condition = step.condition;
-        if (condition.contains("frame") || condition.contains("text"))
+        if ((condition.contains("frame") || condition.contains("text")) && request.value("continues", false))
+            frames_.wait_on();
+        else if (condition.contains("frame") || condition.contains("text"))
             frames_.wait_for(FrameFilter(frame_of(condition), setup_.links), condition.value("text", ""));
         else
             compare(condition);  // what cannot be looked at is refused now
@@ -398,6 +403,7 @@ void DrivenRun::begin_instructions(const json& request, Step& step) {
     step.instructions = step.board->chip().instructions() + static_cast<std::uint64_t>(count);
     step.until = now_ + kLongestWait;
     step.every = kFinest;
+    step.looked = now_ - 1;
 }
 
 const std::string* DrivenRun::waiting_change() const {
@@ -538,6 +544,7 @@ void DrivenRun::go_on_with(RunRequest with, const json& id, const TakeSnapshot& 
                            const std::function<void()>& accepted) {
     RunSetup next = planned(with);
     check_origin(origin_, next, now_, "", images_.remembered());
+    check_boards(next);
     // Of one snapshot both: it is checked first, and kept then.
     cosim::RunSnapshot here = take();
     cosim::check_link_faults(here, next.links, next.scenario.faults, next.scenario.seed);
@@ -549,6 +556,24 @@ void DrivenRun::go_on_with(RunRequest with, const json& id, const TakeSnapshot& 
     request_ = std::move(with);
     return_ = Return{history_.at_or_before(now_), now_, id};
     throw cosim::Reverted{};
+}
+
+/// What only a board itself refuses of its faults: a register that its chip has not, an image for another
+/// one.
+void DrivenRun::check_boards(const RunSetup& next) const {
+    for (std::size_t i = 0; i < next.nodes.size(); ++i) {
+        const PlannedNode& node = next.nodes[i];
+        if (!has_board(node.what) || node.what.faults.size() == setup_.nodes[i].what.faults.size()) continue;
+        make_board(with_images(without_files(node.what)));
+    }
+}
+
+NodeDescription DrivenRun::with_images(NodeDescription board) const {
+    const BoardFields there = board_fields(board);
+    there.firmware = images_.as_it_was(there.firmware);
+    if (auto* tam = std::get_if<tam::TamSpec>(&board.kind))
+        tam->boot_loader = images_.as_it_was(tam->boot_loader);
+    return board;
 }
 
 void DrivenRun::record_faults() const {
@@ -604,6 +629,7 @@ const cosim::RunSnapshot* DrivenRun::begin_again() {
     remember_at_ = history_.next(begin);
     frames_.go_back(return_->to);
     begun_ = false;
+    begins_again_ = true;
     next_ = begin;
     step_ = Step{return_->id, kNever, 0, json()};  // should the run end on its way
     return from_.get();

@@ -79,6 +79,7 @@ class DrivenRun {
         /// Of a step by instructions: the board, and how many it will then have executed.
         DrivenNode* board = nullptr;
         std::uint64_t instructions = 0;
+        cosim::Time looked = 0;  ///< its instructions that begin until then have been waited for
     };
 
     /// What the client did at a board or to the world.
@@ -115,7 +116,7 @@ class DrivenRun {
     /// The step's condition holds now.
     bool met();
     /// When it is looked at next, after now.
-    cosim::Time next_look() const;
+    cosim::Time next_look();
     /// Answers requests until one lets the run go on.
     void serve(const TakeSnapshot& take);
     nlohmann::ordered_json answer(const nlohmann::json& request, const TakeSnapshot& take, bool& go_on);
@@ -133,6 +134,9 @@ class DrivenRun {
     /// Begins the run again here, with the faults of `with`. `accepted`: called once they are.
     [[noreturn]] void go_on_with(RunRequest with, const nlohmann::json& id, const TakeSnapshot& take,
                                  const std::function<void()>& accepted = {});
+    void check_boards(const RunSetup& next) const;
+    /// With its images as they were when the run first used them.
+    NodeDescription with_images(NodeDescription board) const;
     /// All faults that are not the scenario's, into events.toml.
     void record_faults() const;
     /// The plan of `request`, with the client, and what it did to the world before `time`.
@@ -158,7 +162,7 @@ class DrivenRun {
     std::optional<RunWritten> written_;
     cosim::Time now_ = 0;
     std::optional<cosim::Time> next_;  ///< where the run stands still next; nothing: nowhere
-    bool begun_ = false, ended_ = false;
+    bool begun_ = false, ended_ = false, begins_again_ = false;
     std::optional<Step> step_;
     RunHistory history_;
     cosim::Time remember_at_ = cosim::kNever;  ///< the next snapshot into it

@@ -40,6 +40,8 @@ class FrameWatch final : public cosim::TraceSink {
     /// Nothing, or what a step waits for: a frame, or a text in the bytes of one direction of a line.
     void wait_for(FrameFilter filter, std::string text = {});
     void wait_for_nothing() { waits_ = false; }
+    /// For what was waited for last, as if it had never ended: of a text a part may have been seen.
+    void wait_on() { waits_ = true; }
     bool seen() const { return seen_; }
     /// The frame that was waited for; of a text null.
     const nlohmann::ordered_json& found() const { return found_; }

@@ -2,7 +2,7 @@
 
 #include "base/sha256.h"
 #include "base/version/version.h"
-#include "cosim/faults/flash.h"
+#include "cosim/faults/spec/flash.h"
 
 #include <nlohmann/json.hpp>
 

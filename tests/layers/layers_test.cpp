@@ -21,6 +21,8 @@ const std::vector<std::string> kFolders = {
     "base/version",
     "cosim/core",
     "protocols",
+    "cosim/faults/spec",
+    "cosim/faults/kinds",
     "cosim/faults",
     "cosim/trace",
     "cosim/schedule",

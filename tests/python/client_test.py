@@ -146,6 +146,55 @@ class Client(InFolder):
                 hashes.append((ended.report["trace_sha256"], ended.report["simulated_s"]))
         self.assertEqual(hashes[0], hashes[1])
 
+    def test_what_the_world_has_not_heard_yet_is_not_lost(self):
+        """A command that waits for the world's next step while the run is begun again: by a fault, typing, going back."""
+        hashes = []
+        for between in (lambda run: None, lambda run: run.fault("drop link=robot0.uart begin=4900ms count=1 may_not_fire=true")):
+            with self.begun(f"out{len(hashes)}") as run:
+                run.step(to="600 ms")
+                run.act("move carton to 20 cm, 5 cm")
+                run.step(for_="100 us")
+                between(run)
+                acts = list(run.step(to="620 ms").acts)
+                self.assertEqual([act["act"] for act in acts], ["move carton to 20 cm, 5 cm"])
+                run.step(to="700 ms")
+                run.back("650 ms")
+                run.step(to="800 ms")
+                events = run.end().report["trace_sha256"], (self.folder / f"out{len(hashes)}/events.toml").read_text()
+                self.assertIn('move = "carton"', events[1])
+                hashes.append(events[0])
+        self.assertEqual(len(set(hashes)), 1)
+
+    def test_a_fault_that_only_a_board_refuses_changes_nothing(self):
+        with self.begun() as run:
+            run.step(to="200 ms")
+            for wrong in ("flip node=robot0.pic at=300ms space=register symbol=NOPE bit=3",
+                          "flip node=robot0.pic at=300ms space=ram symbol=NOPE bit=3",
+                          "flip node=robot0.pic at=300ms space=ram address=0xffffff bit=3",
+                          "interrupt node=robot0.pic at=300ms vector=NOPE",
+                          "flash node=robot0.pic at=300ms image=/nonexistent.hex",
+                          f"flash node=robot0.pic at=300ms image={SOURCE}/firmware/rab/rab.hex"):
+                with self.assertRaises(puckloop.RequestError, msg=wrong):
+                    run.fault(wrong)
+            self.assertEqual(run.step(to="310 ms").time_ps, 310_000_000_000)
+            self.assertEqual(run.end().report["faults"], [])
+
+    def test_an_instruction_of_a_board_that_hangs_is_waited_for_100_ms(self):
+        with self.begun() as run:
+            run.step(to="200 ms")
+            run.fault("hang node=robot0.pic begin=210ms for=400ms")
+            run.step(to="220 ms")
+            self.assertFalse(run.board("robot0.pic").step())
+            self.assertAlmostEqual(run.time_ps / 1e9, 320, delta=0.01)
+
+    def test_a_value_that_does_not_fit_is_refused(self):
+        with self.begun() as run:
+            run.step(to="100 ms")
+            board = run.board("robot0.pic")
+            for write in (lambda: board.set_register("TMR1", 70_000), lambda: board.set_register("W0", 0x10000)):
+                with self.assertRaisesRegex(puckloop.RequestError, "does not fit into 16 bits"):
+                    write()
+
     def test_a_driven_run_is_the_run_itself(self):
         traces = []
         for steps in ((), ("123 ms", "1 s")):

@@ -3,6 +3,7 @@
 import json
 import pathlib
 import signal
+import socket
 import subprocess
 import tempfile
 import time
@@ -207,6 +208,46 @@ class Live(unittest.TestCase):
         self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
         wrong = puckloop("run", SCENARIO, "--view-port", 5000, "--out", self.out)
         self.assertEqual(wrong.returncode, 2)
+
+    def test_a_condition_that_does_not_come_is_given_up(self):
+        address = self.start(3600)
+        self.ask(address, {"page": "a", "do": "until", "condition": 'text "never said"'})
+        state = self.wait(address, lambda s: s["until"] and s["time_s"] > 0.2)
+        self.assertEqual(state["until"], 'text "never said"')
+        self.assertEqual(self.ask(address, {"page": "a", "do": "pause"})[0], 200)
+        state = self.wait(address, lambda s: s["acts"])
+        self.assertIn("stopped", state["acts"][0]["answer"])
+        self.assertLess(state["time_s"], 59)
+        # Ctrl-C in the middle of another one ends viewer and run.
+        self.ask(address, {"page": "a", "do": "until", "condition": "frame link=robot0.uart value=zz"})
+        self.wait(address, lambda s: s["until"])
+        self.viewer.send_signal(signal.SIGINT)
+        self.assertEqual(self.viewer.wait(30), 0)
+        self.assertEqual(self.run.wait(30), 0)
+
+    def test_a_port_that_is_taken_and_a_run_that_was_killed(self):
+        self.assertEqual(puckloop("run", SCENARIO, "--in-process", "--duration", 1, "--out", self.out).returncode, 0)
+        before = self.report()["trace_sha256"]
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            wrong = puckloop("run", SCENARIO, "--view", "--view-port", taken.getsockname()[1], "--out", self.out)
+        self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
+        self.assertIn("--view-port", wrong.stderr)
+        self.assertEqual(self.report()["trace_sha256"], before)  # nothing is lost
+        address = self.start(30)
+        self.ask(address, {"page": "a", "do": "step", "ms": 500})
+        self.wait(address, lambda s: s["time_s"] > 0.4)
+        self.run.kill()
+        self.viewer.kill()
+        self.run.wait(30)
+        self.viewer.wait(30)
+        page = self.folder / "killed.html"
+        done = puckloop("view", self.out, "--export", page)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("was killed", done.stderr)
+        for words in (("--export", "x.gif"), ("--export", "x")):
+            self.assertEqual(puckloop("view", self.out, *words).returncode, 2)
 
     def test_one_board_alone(self):
         image = SOURCE / "firmware/epuck/epuck.elf"

@@ -92,6 +92,13 @@ class Reports(InFolder):
         wrong = puckloop("experiment", out, "--again", 1, "--out", self.folder / "mine")
         self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
         self.assertTrue((self.folder / "mine/diary.txt").exists())
+        (self.folder / "file").write_text("mine")
+        (self.folder / "link").symlink_to("file")
+        for name in ("file", "link"):
+            wrong = puckloop("experiment", out, "--again", 1, "--out", self.folder / name)
+            self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
+            self.assertEqual((self.folder / name).read_text(), "mine")
+        self.assertEqual(puckloop("experiment", out, "--again", 1, "--fresh").returncode, 2)
         for words in (("--png", 1), ("--export", "x.html"), ("--at", 1)):
             wrong = puckloop("view", out, *words)
             self.assertEqual((wrong.returncode, wrong.stderr.count("\n")), (2, 1), wrong.stderr)
@@ -116,6 +123,9 @@ class Reports(InFolder):
                 break
         self.assertIn("cannot be shown", text)
         self.assertIn("mine.toml", text)
+        scenario.write_text((SOURCE / "scenarios/hello.toml").read_text().replace("../firmware", f"{SOURCE}/firmware"))
+        with urllib.request.urlopen(address + "run/1/", timeout=60) as answer:
+            self.assertIn("carried out again", answer.read().decode())  # it is tried again
 
 
 if __name__ == "__main__":

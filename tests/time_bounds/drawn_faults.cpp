@@ -1,7 +1,7 @@
 #include "tests/time_bounds/drawn_faults.h"
 
-#include "cosim/faults/flash.h"
 #include "cosim/faults/kinds/kind_table.h"
+#include "cosim/faults/spec/flash.h"
 #include "scenarios/reader/faults/fault_places.h"
 
 #include <fmt/format.h>

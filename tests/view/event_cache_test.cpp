@@ -6,12 +6,15 @@
 #include "view/events/read_events.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <fstream>
 #include <random>
 #include <sstream>
+
+#include <zlib.h>
 
 using namespace puckloop::view;
 using namespace puckloop::tests;
@@ -25,6 +28,15 @@ std::string bytes_of(const fs::path& file) {
     std::ostringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
     return text.str();
+}
+
+/// A file of kept events with the sum that its bytes have now.
+std::string with_its_sum(std::string bytes) {
+    constexpr std::size_t kDigits = 10;
+    const std::size_t sum = bytes.find('\n') + 1, rest = sum + kDigits + 1;
+    const uLong now = ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data() + rest),
+                              static_cast<uInt>(bytes.size() - rest));
+    return bytes.replace(sum, kDigits, fmt::format("{:010}", now));
 }
 
 /// All that a page gets.
@@ -65,6 +77,8 @@ TEST_CASE("what was kept is what was read, until a file changes") {
     REQUIRE(at != std::string::npos);
     bytes.replace(at, 8, "POWER-ON");
     std::ofstream(kept, std::ios::binary) << bytes;
+    CHECK(read_and_seen(recording, kNever) == read);  // but not if it is damaged
+    std::ofstream(kept, std::ios::binary) << with_its_sum(bytes);
     CHECK(read_and_seen(recording, kNever) != read);
     // Another file is another recording.
     std::ofstream(folder / "robot0.pic.log", std::ios::app) << "[    1.500000 s] one more\n";

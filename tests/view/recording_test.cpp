@@ -67,7 +67,7 @@ TEST_CASE("a whole folder: head, poses, sensors") {
     float x = 0;
     std::memcpy(&x, poses.data() + 4 + 21 * 4 + 20 * 4, sizeof x);
     CHECK(x == 0.2F);
-    CHECK(recording.sensors(0).size() == 8 + 21 * 12);
+    CHECK(recording.sensors(0).size() == 8 + 21 * (8 + 2 * 4));
     CHECK(recording.sensors(1).size() == 8 + 0);
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("an incomplete folder is shown, and a note names what is missing") {
     CHECK(has(recording.notes()[1], "run the scenario again"));
     CHECK(recording.duration_s() == 2.0);
     CHECK(recording.robots() == 1);
-    CHECK(recording.sensors(0).size() == 8 + 21 * 12);
+    CHECK(recording.sensors(0).size() == 8 + 21 * (8 + 2 * 4));
     EventReader events(recording);
     CHECK(status_of(events)["trouble"] == "");
     fs::remove(folder / "trace.csv");

@@ -47,7 +47,12 @@ int run_again(const ExperimentCommandOptions& options) {
 int conduct(const ExperimentCommandOptions& options) {
     if (options.experiment.file.empty())
         throw InputError("", "experiment", "nothing given", "an experiment file (docs/swarm.md)");
-    if (options.again > 0) return run_again(options);
+    if (options.again > 0) {
+        const auto& other = options.experiment;
+        if (other.fresh || other.slurm || other.jobs != 0 || !other.against.empty())
+            throw InputError("", "--again", "goes with --out alone", "--again N, --out DIR");
+        return run_again(options);
+    }
     if (!options.worker) return swarm::run_experiment(options.experiment) ? 0 : 1;
     swarm::work(options.experiment, options.share);
     return 0;

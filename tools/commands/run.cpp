@@ -26,6 +26,7 @@
 #include "tools/viewer/client_run.h"
 #include "tools/viewer/serve.h"
 #include "traces/export.h"
+#include "view/server/http_server.h"
 
 #include <fmt/format.h>
 
@@ -389,6 +390,8 @@ void declare_run(Command& app, int& status) {
         "  puckloop run scenarios/own_binaries.toml --firmware pic=my.hex --linux ./controller -x 1\n"
         "  puckloop run hello --duration 5s --record --fault \"drop link=robot0.uart at=2s\"");
     command->callback([options, &status] {
+        // Before the run begins and writes over the results of another.
+        if (options->view) view::check_port(static_cast<std::uint16_t>(options->view_port), "--view-port");
         if (options->view_port != 0 && !options->view)
             throw InputError("", "--view-port", "there is no page", "--view with it");
         if (options->view && options->shell)

@@ -62,6 +62,10 @@ void check_export(ViewOptions& options, const std::vector<std::string>& given) {
     if (options.picture_at && !picture)
         throw InputError("", "--png", fmt::format("'{}' is no file of a picture", options.file),
                          "--export with a name that ends with .png, or none");
+    if (!options.file.empty() && options.file != "-" && !picture && !film &&
+        !options.file.ends_with(".html") && !options.file.ends_with(".htm"))
+        throw InputError("", "--export", fmt::format("'{}' is of no kind that is written", options.file),
+                         "a name that ends with .html, .png, .mp4 or .webm");
     if (picture && !options.picture_at)
         throw InputError("", "--export", "it is not clear at which time", "--png TIME with it");
     for (const std::string& option : given) {
@@ -171,7 +175,10 @@ void declare_view(Command& app, int&) {
                 throw InputError(options->folder, "--at", "its run goes on", "the end of the run");
             if (!options->file.empty())
                 throw InputError(options->folder, "--export", "its run goes on", "the end of the run");
-            return serve_live(options->folder, options->port);
+            try {
+                return serve_live(options->folder, options->port);
+            } catch (const view::NobodyThere&) {  // it was killed: what it recorded is shown
+            }
         }
         if (auto runs = many_runs(options->folder)) return serve_runs(std::move(*runs), *options);
         if (options->at && !options->file.empty())

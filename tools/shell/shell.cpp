@@ -129,7 +129,7 @@ struct ShellCommands {
         std::size_t end = 0;
         unsigned long long number = 0;
         try {
-            number = std::stoull(needed(value, "a value"), &end, 0);
+            if (needed(value, "a value").front() != '-') number = std::stoull(value, &end, 0);
         } catch (const std::exception&) {
             end = 0;
         }

@@ -101,6 +101,10 @@ std::string run_page(int run, double time_s) {
 class RunPages::Again {
   public:
     Again(std::vector<std::string> words, fs::path output) : output_(std::move(output)) {
+        std::error_code none;
+        if (fs::is_symlink(fs::symlink_status(output_.parent_path(), none)))
+            throw RunError(output_.parent_path().string() +
+                           ": is a link, and results are not written through it");
         make_folder(output_.parent_path());
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
@@ -197,10 +201,13 @@ void RunPages::reap() {
 view::Content RunPages::wait_for(int run) {
     reap();
     const std::string name = fmt::format("{} {}", runs_.what, run);
-    const auto failed = failed_.find(run);
-    if (failed != failed_.end())
+    // Said once: who asks again has mended it, or waited for another viewer.
+    if (const auto failed = failed_.extract(run))
         return page_of(
-            name, fmt::format("<p>It cannot be shown:</p><pre>{}</pre>\n", escaped(failed->second)), false);
+            name,
+            fmt::format("<p>It cannot be shown:</p><pre>{}</pre>\n<p><a href=\"\">try again</a></p>\n",
+                        escaped(failed.mapped())),
+            false);
     fs::path folder = runs_.kept(run);
     try {
         if (folder.empty() || !fs::exists(folder)) {

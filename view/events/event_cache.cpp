@@ -8,10 +8,13 @@
 
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 namespace puckloop::view {
@@ -21,8 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr int kCacheFormat = 2;
-constexpr std::size_t kLongestHeader = 8U << 20;
+constexpr int kCacheFormat = 3, kDecimal = 10;
+constexpr std::size_t kLongestHeader = 8U << 20, kPiece = 1U << 20;
+constexpr std::size_t kSumDigits = 10;  // a line of its own behind the header, so that it can be written last
 
 struct FileCloser {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -59,6 +63,18 @@ bool get_beams(std::FILE* file, BeamEvents& beams, std::size_t count) {
 constexpr std::size_t kLedBytes = sizeof(double) + sizeof(std::uint16_t) + 2,
                       kBeamBytes = sizeof(double) + sizeof(float) + 2 * sizeof(std::uint16_t) + 1;
 
+/// Of all that follows the header, from where the file stands; it stands there again. Nothing: it cannot be
+/// read.
+std::optional<std::uint64_t> sum_of_rest(std::FILE* file) {
+    const long begin = std::ftell(file);
+    std::vector<unsigned char> piece(kPiece);
+    uLong sum = ::crc32(0, nullptr, 0);
+    for (std::size_t got = 0; (got = std::fread(piece.data(), 1, piece.size(), file)) > 0;)
+        sum = ::crc32(sum, piece.data(), static_cast<uInt>(got));
+    if (std::ferror(file) != 0 || std::fseek(file, begin, SEEK_SET) != 0) return std::nullopt;
+    return sum;
+}
+
 /// The first line; empty: it has none of a fitting length.
 std::string header_of(std::FILE* file) {
     std::string line;
@@ -85,7 +101,10 @@ bool load_from(std::FILE* file, std::uint64_t size, const std::string& sources, 
         if (count > size) return false;
     const std::uint64_t arrays =
         events * EventTable::Kept::kBytesOfEvent + led_count * kLedBytes + beam_count * kBeamBytes;
-    if (line.size() + 1 + arrays + kept.text_bytes != size) return false;
+    if (line.size() + 1 + kSumDigits + 1 + arrays + kept.text_bytes != size) return false;
+    const std::string sum = header_of(file);
+    if (sum.size() != kSumDigits || sum_of_rest(file) != std::strtoull(sum.c_str(), nullptr, kDecimal))
+        return false;
     kept.left_out = header.at("left_out").get<std::uint64_t>();
     leds.left_out = header.at("leds_left_out").get<std::uint64_t>();
     for (const ordered_json& track : header.at("tracks"))
@@ -109,13 +128,20 @@ bool save_to(std::FILE* file, const std::string& sources, const EventTable& tabl
         {"text_bytes", kept.text_bytes},  {"left_out", kept.left_out},    {"leds", leds.times.size()},
         {"leds_left_out", leds.left_out}, {"beams", beams.begins.size()}, {"tracks", std::move(tracks)}};
     const std::string line = header.dump(-1, ' ', true, ordered_json::error_handler_t::replace) + "\n";
-    bool good = std::fwrite(line.data(), 1, line.size(), file) == line.size() && put(file, kept.begins) &&
-                put(file, kept.durations) && put(file, kept.tracks) && put(file, kept.flags) &&
-                put(file, kept.text_sizes) && put_leds(file, leds) && put_beams(file, beams);
+    const std::string no_sum = std::string(kSumDigits, '0') + "\n";
+    bool good = std::fwrite(line.data(), 1, line.size(), file) == line.size() &&
+                std::fwrite(no_sum.data(), 1, no_sum.size(), file) == no_sum.size() &&
+                put(file, kept.begins) && put(file, kept.durations) && put(file, kept.tracks) &&
+                put(file, kept.flags) && put(file, kept.text_sizes) && put_leds(file, leds) &&
+                put_beams(file, beams);
     table.each_text([&](std::string_view text) {
         good = good && std::fwrite(text.data(), 1, text.size(), file) == text.size();
     });
-    return good && std::fflush(file) == 0;
+    const auto behind_sum = static_cast<long>(line.size() + no_sum.size());
+    if (!good || std::fflush(file) != 0 || std::fseek(file, behind_sum, SEEK_SET) != 0) return false;
+    const auto sum = sum_of_rest(file);
+    return sum && std::fseek(file, static_cast<long>(line.size()), SEEK_SET) == 0 &&
+           std::fputs(fmt::format("{:0{}}", *sum, kSumDigits).c_str(), file) >= 0 && std::fflush(file) == 0;
 }
 
 }  // namespace
@@ -163,7 +189,7 @@ void save_events(const fs::path& folder, const std::string& sources, const Event
                  const LedEvents& leds, const BeamEvents& beams) {
     const fs::path part = folder / fmt::format("{}.{}.part", kEventCacheFile, ::getpid());
     bool good = false;
-    if (const File file{std::fopen(part.c_str(), "wbxe")}) {
+    if (const File file{std::fopen(part.c_str(), "w+bxe")}) {
         try {
             good = save_to(file.get(), sources, table, leds, beams);
         } catch (const std::exception&) {

@@ -33,7 +33,10 @@ std::string socket_of(const fs::path& folder) {
 }  // namespace
 
 bool ControlClient::is_there(const fs::path& folder) {
-    return !socket_of(folder).empty();
+    // A run that was killed leaves control.json; its socket goes with the folder that it was in.
+    const std::string socket = socket_of(folder);
+    std::error_code none;
+    return !socket.empty() && fs::exists(socket, none);
 }
 
 ControlClient::ControlClient(const fs::path& folder) {
@@ -50,9 +53,10 @@ ControlClient::ControlClient(const fs::path& folder) {
         ::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
         const int reason = errno;
         if (socket_ >= 0) ::close(socket_);
-        throw InputError(folder.string(), "",
-                         fmt::format("its run does not answer: {}", std::strerror(reason)),
-                         "a run that goes on and has no other client");
+        const std::string problem = fmt::format("its run does not answer: {}", std::strerror(reason));
+        if (reason == ECONNREFUSED || reason == ENOENT)
+            throw NobodyThere(folder.string(), "", problem, "a run that goes on and has no other client");
+        throw InputError(folder.string(), "", problem, "a run that goes on and has no other client");
     }
     try {
         greeting_ = next_line();

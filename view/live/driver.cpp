@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace puckloop::view {
 
@@ -155,21 +156,37 @@ void Driver::look() {
         -1, ' ', false, json::error_handler_t::replace);
 }
 
+/// In pieces, so that it can be stopped.
 void Driver::until(const Work& work) {
-    json asked{{"op", "step"}, {"for", fmt::format("{} ms", work.ms)}, {"until", work.text}};
+    json asked{{"op", "step"}, {"until", work.text}};
     if (!work.board.empty()) asked["node"] = work.board;
-    const auto reply = json::parse(run_.ask(asked.dump()), nullptr, false);
-    if (!reply.is_object()) throw RunError("a reply of the run that is none");
-    const std::lock_guard lock(mutex_);
-    time_s_ = reply.value("time_s", time_s_);
-    const bool ok = reply.value("ok", false), met = ok && reply.value("met", false);
-    note("until " + work.text,
-         !ok ? reply.value("error", "refused")
-             : fmt::format("{:.6f} s: {}", time_s_, met ? "it holds" : "it did not hold until now"),
-         !met);
-    if (!reply.value("ended", false)) return;
-    over_ = true;
-    why_ = reply.value("ended_why", "");
+    {
+        const std::lock_guard lock(mutex_);
+        until_ = work.text;
+    }
+    for (int done = 0; done < work.ms;) {
+        const int piece = std::min(kStepMs, work.ms - done);
+        asked["for"] = fmt::format("{} ms", piece);
+        const auto reply = json::parse(run_.ask(asked.dump()), nullptr, false);
+        if (!reply.is_object()) throw RunError("a reply of the run that is none");
+        done += piece;
+        asked["continues"] = true;
+        const std::lock_guard lock(mutex_);
+        time_s_ = reply.value("time_s", time_s_);
+        const bool ok = reply.value("ok", false), met = ok && reply.value("met", false);
+        over_ = reply.value("ended", false);
+        if (over_) why_ = reply.value("ended_why", "");
+        const bool stopped = std::exchange(stop_, false) || end_;
+        if (ok && !met && !over_ && !stopped && done < work.ms) continue;
+        until_.clear();
+        note("until " + work.text,
+             !ok ? reply.value("error", "refused")
+             : met
+                 ? fmt::format("{:.6f} s: it holds", time_s_)
+                 : fmt::format("{:.6f} s: it did not hold until now{}", time_s_, stopped ? ", stopped" : ""),
+             !met);
+        return;
+    }
 }
 
 /// The run is begun again from an earlier time or with a fault.
@@ -262,6 +279,7 @@ std::string Driver::request(const std::string& text) {
         playing_ = true;
     } else if (what == "pause") {
         playing_ = false;
+        stop_ = !until_.empty();
     } else if (what == "step") {
         const double ms = number_of("ms", 0.0);
         if (!(ms >= 1.0 && ms <= kMostStepMs)) return "a step of 1 to 10,000 ms is expected";
@@ -283,6 +301,7 @@ std::string Driver::request(const std::string& text) {
         if (board.size() > kLongestName) return "a board's name is expected";
         if (!(ms >= 1.0 && ms <= kMostUntilMs)) return "1 to 60,000 ms are expected";
         playing_ = false;
+        stop_ = false;
         waiting_.push_back(
             {.kind = Work::Kind::Until, .ms = static_cast<int>(ms), .text = condition, .board = board});
     } else if (what == "back") {
@@ -349,7 +368,8 @@ std::string Driver::state() const {
                         {"refused", act.refused}});
     const json state{{"time_s", time_s_}, {"playing", playing_}, {"speed", speed_},
                      {"over", over_},     {"why", why_},         {"driver", driver_},
-                     {"acts", acts},      {"epoch", epoch_},     {"look", json::parse(look_)}};
+                     {"acts", acts},      {"epoch", epoch_},     {"look", json::parse(look_)},
+                     {"until", until_}};
     return state.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -39,8 +39,8 @@ class Driver {
     std::string request(const std::string& text);
 
     /// JSON: time_s, playing, speed, over, why, driver, epoch (rises when what was recorded changes: the run
-    /// went back), acts (the latest: number, command, answer, refused), look (what was asked for at the time:
-    /// "where" and "values").
+    /// went back), acts (the latest: number, command, answer, refused), until (the condition it goes on to
+    /// now; empty: none), look (what was asked for at the time: "where" and "values").
     std::string state() const;
     /// JSON: boards, what faults the run can have (run/driven/possible_faults.h), and what can be done to its
     /// world (possible_actions.h).
@@ -92,7 +92,9 @@ class Driver {
     std::string possible_, board_, items_ = "[]", look_ = "null";  // JSON but for the board's name
     std::uint64_t epoch_ = 0;
     double time_s_ = 0.0, speed_ = 1.0;
+    std::string until_;  ///< the condition that the run goes on to now; empty: none
     bool playing_ = false, end_ = false, over_ = false;
+    bool stop_ = false;  ///< not on to until_ any more
     bool busy_ = false;  ///< the run has been asked for something
     std::thread thread_;
 };

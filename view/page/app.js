@@ -232,7 +232,7 @@ class App {
   play(on) {
     if (this.live) {
       if (on) this.live.atEdge = true;
-      if (on || this.live.state.playing) this.drive(on ? { do: 'play', speed: Number(element('speed').value) } : { do: 'pause' });
+      if (on || this.live.state.playing || this.live.state.until) this.drive(on ? { do: 'play', speed: Number(element('speed').value) } : { do: 'pause' });
       return;
     }
     if (on && this.run.now >= this.run.duration) this.seek(0);
@@ -292,7 +292,7 @@ class App {
     const on = (id, what, act) => element(id).addEventListener(what, (event) => {
       Promise.resolve(act(event)).catch((error) => this.trouble(error));
     });
-    on('play', 'click', () => this.play(!(this.live ? this.live.state.playing : this.playing)));
+    on('play', 'click', () => this.play(!(this.live ? this.live.state.playing || this.live.state.until : this.playing)));
     if (this.live) {
       on('speed', 'change', () => this.live.state.playing && this.play(true));
       on('step-1', 'click', () => { this.live.atEdge = true; return this.drive({ do: 'step', ms: 1 }); });
@@ -348,7 +348,7 @@ class App {
       Home: () => move(-1e9), End: () => move(1e9), n: () => this.step(true), N: () => this.step(false),
       '+': () => this.timeline.zoom(0.6, this.run.now), '-': () => this.timeline.zoom(1 / 0.6, this.run.now),
       0: () => this.timeline.all(), f: () => element('arena-fit').click(), m: () => this.marker(false),
-      i: () => this.live && this.board.board && this.board.stepper.click(), M: () => this.marker(true), '/': () => element('find').focus(), '?': () => element('help').showModal(),
+      i: () => this.live && this.board.board && this.board.stepper.click(), I: () => keys.i(), M: () => this.marker(true), '/': () => element('find').focus(), '?': () => element('help').showModal(),
     };
     const act = keys[event.key];
     if (!act) return undefined;
@@ -389,8 +389,9 @@ class App {
       const span = this.timeline.to - this.timeline.from;
       if (now > this.timeline.to || span < 10 && run.duration < 10) this.timeline.place(Math.max(0, now - 0.8 * span), Math.max(span, Math.min(10, run.duration)));
     }
-    element('play').textContent = state.playing ? '\u275a\u275a' : '\u25b6';
+    element('play').textContent = state.playing || state.until ? '\u275a\u275a' : '\u25b6';
     element('take').hidden = live.drives;
+    for (const part of element('live').querySelectorAll('button, input')) part.disabled = state.over && part.id !== 'to-edge';
     document.body.dataset.playing = state.playing;
     document.body.dataset.simulated = state.time_s.toFixed(6);
     document.body.dataset.over = state.over;
@@ -401,7 +402,7 @@ class App {
       this.terminal.read().catch((error) => this.trouble(error));
     }
     const last = state.acts.at(-1);
-    const text = state.over ? `the run is over: ${state.why}` : last ? `${last.command}: ${last.answer || 'done in the next step'}` : '';
+    const text = state.until ? `on until ${state.until}: ${state.time_s.toFixed(3)} s; pause stops it` : state.over ? `the run is over: ${state.why}` : last ? `${last.command}: ${last.answer || 'done in the next step'}` : '';
     const said = `${last ? last.number : 0} ${text}`;
     if (said !== this.said) {
       this.said = said;

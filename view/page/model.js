@@ -241,7 +241,7 @@ export function parseBeams(buffer) {
 export function parseSensors(buffer, names) {
   const bytes = new Bytes(buffer);
   const rows = bytes.number(), columns = bytes.number();
-  const t = bytes.array(Float32Array, rows);
+  const t = bytes.array(Float64Array, rows);
   const values = new Map();
   for (let i = 1; i < columns; ++i) values.set(names[i - 1], bytes.array(Float32Array, rows));
   return { t, columns: values };

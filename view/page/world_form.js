@@ -1,5 +1,10 @@
 // The form for what is done to the world: which action, to what, and the keys that the action has.
 
+const hints = { to: 'x, y: 10 cm, 0 cm', by: 'dx, dy: 10 cm, 0 cm', from: 'x, y: 0 cm, 0 cm', centre: 'x, y: 10 cm, 0 cm', position: '0 to 15',
+  size: '10 cm, 10 cm (, 10 cm)', heading: '90 deg', over: '2 s', hold: '500 ms', key: '0 to 63', address: '0 to 31', radius: '5 cm',
+  height: '10 cm', thickness: '1 cm', mass: '200 g', grey: '0 to 1', reflectivity: '0 to 10', charge: '0 to 1', ground: '0 to 1', ambient: '0 to 100',
+  intensity: '0 to 100', level: '500', parameter: 'proximity.gain3', value: 'with its unit', port: '1 to 65535', robots: 'robot0, robot1' };
+
 export class WorldForm {
   /** `possible`: the run's answer to "actions". `objects()`: names of what is there now. `ask(request)` has the run do
       something. */
@@ -50,6 +55,7 @@ export class WorldForm {
     this.fields.replaceChildren(...keys.map((key) => {
       const line = document.createElement('label'), input = document.createElement('input');
       input.dataset.key = key;
+      input.placeholder = hints[key] || '';
       if (key === 'parameter') input.setAttribute('list', 'world-parameters');
       input.addEventListener('input', () => this.write());
       line.append(`${key} `, input);

@@ -261,7 +261,8 @@ std::string Recording::tail(Rows rows, std::size_t from) const {
 
 std::string Recording::sensors(std::size_t robot) const {
     const std::size_t columns = sensor_columns().size();
-    std::vector<std::vector<float>> values(columns + 1);
+    std::vector<double> times;
+    std::vector<std::vector<float>> values(columns);
     const fs::path file = folder_ / "sensors.csv";
     std::ifstream in(file);
     std::string line;
@@ -276,27 +277,32 @@ std::string Recording::sensors(std::size_t robot) const {
         if (!broken && std::string_view(line).substr(first + 1, second - first - 1) != name) continue;
         if (!broken && seen++ % stride != 0) continue;
         const auto cells = csv_cells(line, ',');
-        std::vector<float> row;
+        std::vector<double> row;
         double value = 0.0;
         for (std::size_t i = 0; !broken && i < cells.size(); ++i)
-            if (i != 1 && csv_number(cells[i], value)) row.push_back(static_cast<float>(value));
+            if (i != 1 && csv_number(cells[i], value)) row.push_back(value);
         if (row.size() != columns + 1) {
             if (in.peek() == std::ifstream::traits_type::eof()) break;  // the run was killed
             throw RunError(fmt::format("{}: line {}: not a row of sensor values", file.string(), number));
         }
-        for (std::size_t i = 0; i < row.size(); ++i)
-            values[i].push_back(row[i]);
-        if (values[0].size() < kMostRows) continue;
+        times.push_back(row[0]);
+        for (std::size_t i = 0; i < columns; ++i)
+            values[i].push_back(static_cast<float>(row[i + 1]));
+        if (times.size() < kMostRows) continue;
         stride *= 2;
-        for (auto& column : values) {
+        const auto every_second = [](auto& column) {
             for (std::size_t i = 0; 2 * i < column.size(); ++i)
                 column[i] = column[2 * i];
             column.resize((column.size() + 1) / 2);
-        }
+        };
+        every_second(times);
+        for (auto& column : values)
+            every_second(column);
     }
     std::string out;
-    append_number(out, static_cast<std::uint32_t>(values[0].size()));
-    append_number(out, static_cast<std::uint32_t>(values.size()));
+    append_number(out, static_cast<std::uint32_t>(times.size()));
+    append_number(out, static_cast<std::uint32_t>(columns + 1));
+    append_numbers(out, std::span<const double>(times));
     for (const auto& column : values)
         append_numbers(out, std::span(column));
     return out;

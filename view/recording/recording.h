@@ -33,8 +33,9 @@ class Recording {
     /// For each path of head()'s "paths", in that order: the number of points (32 bits), then times (s), x, y
     /// (m) and headings (rad), 32-bit floats; little-endian.
     std::string poses() const;
-    /// Of a robot: numbers of rows and of columns (32 bits), then column by column 32-bit floats, times
-    /// first. At most kMostRows rows, every so many-th of the file. Throws RunError for damaged rows.
+    /// Of a robot: numbers of rows and of columns (32 bits), then times (s, 64-bit floats), then column by
+    /// column 32-bit floats. At most kMostRows rows, every so many-th of the file. Throws RunError for
+    /// damaged rows.
     std::string sensors(std::size_t robot) const;
 
     /// Of the pheromones of head()'s arena, in that order: the number of squares and 0 (32 bits), then times

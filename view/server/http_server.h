@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace puckloop::view {
 
@@ -21,6 +22,9 @@ struct ServerLimits {
     double answer_seconds = 60;       ///< for a slow reader to take an answer
     double feed_seconds = 1.0 / 30;   ///< between two messages of a feed, at least
 };
+
+/// Throws InputError, naming `option`, if this port of 127.0.0.1 is taken; 0 never is.
+void check_port(std::uint16_t port, std::string_view option);
 
 class HttpServer {
   public:

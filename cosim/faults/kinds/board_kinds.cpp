@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/faults/kinds/kind_table.h"
-#include "cosim/faults/profile.h"
+#include "cosim/faults/spec/profile.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // What else is known of a kind of fault, for whoever plans a run and reports on it.
 
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <string_view>
 

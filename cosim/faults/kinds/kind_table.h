@@ -2,8 +2,8 @@
 // What kinds of faults there are: where each can sit and which parameters it takes. One table serves the
 // reader of scenarios, the command line and who carries the faults out.
 
-#include "cosim/faults/fault_kind.h"
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_kind.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include <cstdint>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/faults/kinds/kind_table.h"
-#include "cosim/faults/typed_bytes.h"
+#include "cosim/faults/spec/typed_bytes.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 // the line as well, and a receiver takes what begins while it is free.
 
 #include "cosim/faults/frame_fault.h"
-#include "cosim/faults/typed_bytes.h"
+#include "cosim/faults/spec/typed_bytes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 //   emitter_dead `emitter`, receiver_dead `receiver`     burst by burst
 //   lost_interrupt `vector`; late_interrupt `vector` `delay` `jitter`    interrupt by interrupt
 
-#include "cosim/faults/profile.h"
+#include "cosim/faults/spec/profile.h"
 #include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/carried.h"
 #include "emu/chip/faults/chip_access.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "cosim/faults/flash.h"
+#include "cosim/faults/spec/flash.h"
 #include "cosim/i2c/i2c_fault.h"
 #include "scenarios/reader/faults/fault_places.h"
 #include "scenarios/reader/faults/fault_when.h"

@@ -1,4 +1,4 @@
-#include "cosim/faults/fault_spec.h"
+#include "cosim/faults/spec/fault_spec.h"
 
 #include "base/error.h"
 

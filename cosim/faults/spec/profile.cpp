@@ -1,4 +1,4 @@
-#include "cosim/faults/profile.h"
+#include "cosim/faults/spec/profile.h"
 
 #include "base/error.h"
 

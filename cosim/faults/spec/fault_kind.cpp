@@ -1,4 +1,4 @@
-#include "cosim/faults/fault_kind.h"
+#include "cosim/faults/spec/fault_kind.h"
 
 #include <algorithm>
 #include <array>
