@@ -12,6 +12,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 namespace puckloop::view {
 
@@ -33,10 +34,16 @@ std::string socket_of(const fs::path& folder) {
 }  // namespace
 
 bool ControlClient::is_there(const fs::path& folder) {
-    // A run that was killed leaves control.json; its socket goes with the folder that it was in.
+    // A run that was killed leaves control.json and its socket, which nobody listens to. To connect to it
+    // would be to become its client.
     const std::string socket = socket_of(folder);
-    std::error_code none;
-    return !socket.empty() && fs::exists(socket, none);
+    if (socket.empty()) return false;
+    std::ifstream all("/proc/net/unix");
+    for (std::string line; std::getline(all, line);)
+        if (line.size() > socket.size() && line.ends_with(socket) &&
+            line[line.size() - socket.size() - 1] == ' ')
+            return true;
+    return !all.eof();  // the list itself cannot be read
 }
 
 ControlClient::ControlClient(const fs::path& folder) {
