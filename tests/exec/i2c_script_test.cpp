@@ -223,3 +223,27 @@ TEST_CASE("a slave that holds SCL for ever ends the script and is named") {
     CHECK(master.limit() == cosim::kNever);
     CHECK(master.report().played == 0);
 }
+
+TEST_CASE("a STOP that the first bit of the slave's next byte prevents comes behind nine clocks") {
+    for (const bool low : {false, true}) {
+        INFO("first bit " << (low ? 0 : 1));
+        Slave slave;
+        exec::I2cScriptMaster master(exec::parse_i2c_script("s", "0 raw s3f r p\n0.01 w 0x20 01\n"), {},
+                                     slave, nullptr);
+        std::string wires;
+        play(master, slave, [&](I2cPhase& phase, std::size_t) {
+            // Behind the byte read: what is on SDA.
+            phase.ack = phase.kind == I2cPhaseKind::Acknowledge ? (low ? 1 : 0) : phase.ack;
+            if (phase.kind == I2cPhaseKind::Start || phase.kind == I2cPhaseKind::Write) phase.ack = 1;
+            phase.byte = 0x5A;
+            return true;
+        });
+        for (const I2cPhase& phase : slave.phases)
+            wires += "SwrPa?"[static_cast<std::size_t>(phase.kind)] +
+                     std::string(phase.kind == I2cPhaseKind::Read && phase.ack == 0 ? "-" : "");
+        CHECK(wires == (low ? "Srar-PSwP" : "SraPSwP"));
+        CHECK(master.report().bytes_read == 1);
+        CHECK(master.report().reads.at(0).bytes == std::vector<std::uint8_t>{0x5A});
+        CHECK(master.report().played == 2);
+    }
+}
