@@ -199,7 +199,7 @@ void add_world(RunSetup& setup, const RunRequest& request) {
                    .events = events,
                    .control = setup.control,
                    .bluetooth = scenarios::has_bluetooth(setup.scenario),
-                   .wifi = has_moving_radios(setup.scenario),
+                   .wifi = hears_world(setup.scenario),
                    .tracker = setup.scenario.tracker};
     if (program)
         spec.mission = {.command = program->command,

@@ -88,7 +88,7 @@ class Medium {
 
     std::vector<Position> positions_;
     std::vector<std::size_t> bodies_;
-    Obstacles obstacles_{{}, 0, 0.0};
+    Obstacles obstacles_{{}, -1, 0.0};
     std::vector<std::vector<double>> shadows_;  ///< dB, of each pair
     std::vector<Transmission> on_air_;          ///< in the order in which they began
 };

@@ -58,7 +58,7 @@ void Obstacles::know(std::size_t obstacle) {
 bool Obstacles::take(int signal, double value) {
     auto found = signals_.find(signal);
     if (found == signals_.end()) {
-        if (first_shape_ <= 0 || signal < first_shape_) return false;
+        if (first_shape_ < 0 || signal < first_shape_) return false;
         // Something that was added to the world.
         constexpr int kSize = static_cast<int>(kObstacleSignals);
         Obstacle added;

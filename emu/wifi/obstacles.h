@@ -53,7 +53,7 @@ inline constexpr std::size_t kObstacleSignals = 8;
 
 class Obstacles {
   public:
-    /// `first_shape`: signal at which shapes begin, 0: there are none; `loss`: dB, of what is added later.
+    /// `first_shape`: signal at which shapes begin, -1: there are none; `loss`: dB, of what is added later.
     Obstacles(std::vector<Obstacle> list, int first_shape, double loss);
 
     /// A signal of the world. False: it is of none of these.

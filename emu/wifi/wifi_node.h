@@ -60,7 +60,7 @@ struct WifiSpec {
     std::optional<Position> access_point{};
     std::vector<WifiStation> stations{};
     std::vector<Obstacle> obstacles{};
-    int first_shape = 0;
+    int first_shape = -1;
     std::string csv{};
     std::string pcapng{};
     std::string routes_csv{};
@@ -80,7 +80,7 @@ struct WifiSpec {
                      field("stations", &S::stations, "the computers").required(),
                      field("obstacles", &S::obstacles, "walls and things in the way"),
                      field("first_shape", &S::first_shape,
-                           "signal of the world at which shapes of things begin; 0: there are none"),
+                           "signal of the world at which shapes of things begin; -1: there are none"),
                      field("csv", &S::csv, "what became of frames; empty: none"),
                      field("routes_csv", &S::routes_csv, "ways through a mesh; empty: none"),
                      field("pcapng", &S::pcapng, "captured frames; empty: none"), unlisted(&S::faults));

@@ -82,7 +82,7 @@ struct WorldNode::Impl {
     cosim::PortIndex first_booth = 0xFFFF;
     cosim::PortIndex messages = 0xFFFF;
     std::vector<cosim::PortIndex> pose_ports;                     // media: they hear where everything is
-    std::vector<double> poses;                                    // as last published; empty without those
+    std::vector<double> poses;                                    // as last published
     std::map<std::size_t, double> scene;                          // likewise, by id: what events change
     std::vector<std::array<double, kPoseSignals>> virtual_poses;  // of boards, as last published
     std::vector<cosim::Message> waiting;                          // stamped at or after the next step
@@ -272,7 +272,7 @@ void WorldNode::Impl::publish_body(std::size_t id, double value, std::vector<cos
 
 /// What events change, for the infra-red medium.
 void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
-    if (poses.empty() || !timeline.active()) return;
+    if (pose_ports.empty() || !timeline.active()) return;
     publish_virtual_boards(outbox);
     const std::size_t moving = poses.size() / kPoseSignals;
     const SceneSignals ids{moving};

@@ -135,8 +135,9 @@ void join_network(const RunSetup& setup, const std::string& computer, LinuxProgr
                 spec.names.push_back({robot.linux_board->hostname, one.address});
 }
 
-bool has_moving_radios(const scenarios::Scenario& scenario) {
+bool hears_world(const scenarios::Scenario& scenario) {
     if (!scenario.network || !scenario.network->wifi) return false;
+    if (scenario.network->wifi->wall_loss != 0 || scenario.network->wifi->thing_loss != 0) return true;
     const auto computers = scenarios::computers_of(scenario);
     return std::any_of(computers.begin(), computers.end(), [](const auto& one) { return !one.is_host; });
 }
@@ -157,7 +158,7 @@ void add_network(RunSetup& setup, const RunRequest& request) {
         add_free(setup, kNetwork, wifi_spec(setup, computers));
     else
         add_free(setup, kNetwork, network_spec(*scenario.network, computers));
-    if (!has_moving_radios(scenario)) return;
+    if (!hears_world(scenario)) return;
     cosim::LinkSpec places{"network.world", {kNetwork, "world"}, {"world", kNetwork}};
     places.record_from_b = false;
     setup.links.push_back(places);

@@ -11,8 +11,8 @@ namespace puckloop::tools {
 /// Puts the program of `computer`, a robot or a host, on the scenario's network, if there is one.
 void join_network(const RunSetup& setup, const std::string& computer, LinuxProgram& program);
 
-/// Robots on it have radios, so that the world states where they are.
-bool has_moving_radios(const scenarios::Scenario& scenario);
+/// The world states to the network where its robots are, or what stands between radios.
+bool hears_world(const scenarios::Scenario& scenario);
 
 /// The link for what events send to computers of the network. Behind all others (cosim/trace/trace_hash.h).
 void add_messages(RunSetup& setup);

@@ -177,6 +177,12 @@ TEST_CASE("a wall of the world is in the way of radios, and a mesh goes round it
     // 4 m: -43 dBm; through the wall 60 dB less.
     CHECK(answers("open", text("")) == 20);
     CHECK(answers("walled", text("wall_loss = \"60 dB\"")) == 0);
+    // It goes at 1.55 s, and a heavy box comes at 2.05 s: those of 1.6 to 2.0 s are answered.
+    CHECK(
+        answers("removed", text("wall_loss = \"60 dB\"\nthing_loss = \"60 dB\"",
+                                "[[event]]\nat = \"1.55 s\"\nremove = \"long\"\n[[event]]\nat = \"2.05 s\"\n"
+                                "add = \"box\"\nname = \"new\"\ncentre = [\"1 m\", \"-2 m\"]\n"
+                                "size = [\"1 m\", \"1 m\", \"1 m\"]\nmass = \"1 kg\"\n")) == 5);
     CHECK(answers("round", text("wall_loss = \"60 dB\"\nmesh = true")) == 20);
     const std::string routes = text_of(bench.out("round") / "routes.csv");
     CHECK(routes.find("0.000000,client,server,between,2\n") != std::string::npos);
