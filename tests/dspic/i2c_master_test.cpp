@@ -13,7 +13,7 @@ using puckloop::cosim::Time;
 namespace {
 
 constexpr std::uint16_t kEnable = 0x8000;
-constexpr std::uint16_t kSen = 1, kRsen = 2, kPen = 4, kRcen = 8, kAcken = 16;
+constexpr std::uint16_t kSen = 1, kRsen = 2, kPen = 4, kRcen = 8, kAcken = 16, kAckdt = 32;
 constexpr std::uint16_t kAckstat = 0x8000, kTrstat = 0x4000, kBcl = 0x400, kIwcol = 0x80, kP = 0x10, kS = 8,
                         kRbf = 2, kTbf = 1;
 // FSCL = 1 / (151 / FCY + 1 / 1,111,111): 164.27 cycles, 89.8 kHz.
@@ -96,6 +96,7 @@ TEST_CASE_METHOD(I2cBench, "a register read: start, address, register, restart, 
     CHECK(read(sfr::I2CRCV) == 0x5C);
     CHECK_FALSE(stat() & kRbf);
 
+    set(kAckdt);
     set(kAcken);
     done();
     CHECK_FALSE(read(sfr::I2CCON) & kAcken);
