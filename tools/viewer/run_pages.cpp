@@ -201,7 +201,7 @@ void RunPages::reap() {
 view::Content RunPages::wait_for(int run) {
     reap();
     const std::string name = fmt::format("{} {}", runs_.what, run);
-    // Said once: who asks again has mended it, or waited for another viewer.
+    // Said once: who asks again has put it right, or waited for another viewer.
     if (const auto failed = failed_.extract(run))
         return page_of(
             name,
