@@ -677,6 +677,7 @@ ordered_json DrivenRun::greeting() const {
             {"commit", version.commit},
             {"time_s", cosim::to_seconds(now_)},
             {"time_ps", now_},
+            {"scenario", request_.scenario.filename().string()},
             {"results", setup_.out.string()},
             {"nodes", nodes},
             {"boards", boards},

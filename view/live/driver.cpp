@@ -32,6 +32,7 @@ Driver::Driver(const fs::path& folder) : run_(folder) {
     if (!possible.is_object()) possible = json::object();
     const auto actions = json::parse(run_.ask(R"({"op": "actions"})"), nullptr, false);
     if (actions.is_object()) possible.update(actions);
+    possible["scenario"] = first.value("scenario", "");
     possible["boards"] = first.value("boards", json::array());
     possible_ = possible.dump(-1, ' ', false, json::error_handler_t::replace);
     thread_ = std::thread([this] { run(); });

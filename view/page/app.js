@@ -83,7 +83,7 @@ class App {
 
   fill() {
     const { head } = this.run, report = head.report;
-    const title = report ? report.scenario : head.live ? 'a run that goes on' : 'a run';
+    const title = report ? report.scenario : head.live ? this.possible.scenario || 'a run that goes on' : 'a run';
     element('title').textContent = title;
     document.title = `${title} - puckloop`;
     const outcome = element('outcome');
@@ -402,12 +402,16 @@ class App {
       this.terminal.read().catch((error) => this.trouble(error));
     }
     const last = state.acts.at(-1);
-    const text = state.until ? `on until ${state.until}: ${state.time_s.toFixed(3)} s; pause stops it` : state.over ? `the run is over: ${state.why}` : last ? `${last.command}: ${last.answer || 'done in the next step'}` : '';
+    const line = (act) => `${act.command}: ${act.answer || 'the world has not come to it yet'}`;
+    // Of the last three: what was refused is not hidden by what came after it.
+    const shown = state.acts.slice(-3).filter((act) => act === last || act.refused);
+    const text = state.until ? `on until ${state.until}: ${state.time_s.toFixed(3)} s; pause stops it`
+      : state.over ? `the run is over: ${state.why}` : shown.map(line).join('\n');
     const said = `${last ? last.number : 0} ${text}`;
     if (said !== this.said) {
       this.said = said;
       element('detail').textContent = text;
-      element('detail').className = last && last.refused ? 'failed' : '';
+      element('detail').className = !state.over && shown.some((act) => act.refused) ? 'failed' : '';
       if (last && last.command.startsWith('until ')) element('until').classList.toggle('failed', last.refused);
     }
   }
