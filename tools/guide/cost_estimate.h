@@ -1,5 +1,5 @@
 #pragma once
-// What a run will cost in time, from what runs cost on the machine of docs/performance.md.
+// What a run will cost in time, from what shipped scenarios cost and how fast this machine is.
 
 #include "scenarios/description/scenario.h"
 
