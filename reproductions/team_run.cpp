@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/text_file.h"
-#include "run/run_scenario.h"
+#include "reproductions/runs/scratch_run.h"
 #include "traces/recorded_trace.h"
 
 #include <fmt/format.h>
@@ -74,26 +74,16 @@ fs::path write_team(const TeamSpec& spec) {
 }  // namespace
 
 std::vector<Pause> run_team(const TeamSpec& spec) {
-    std::error_code failed;
-    fs::remove_all(spec.folder, failed);
-    make_folder(spec.folder);
-    RunRequest request;
-    request.scenario = write_team(spec);
-    request.out = spec.folder / "results";
-    request.in_process = true;
-    const RunSetup setup = set_up(request);
-    const cosim::InterruptGuard interrupt;
-    const cosim::Outcome outcome = run_scenario(setup, request, {}, &interrupt);
-    if (!outcome.success || outcome.reason == cosim::EndReason::Interrupted) throw RunError(outcome.text);
+    empty_folder(spec.folder);
+    const fs::path results = run_beside(write_team(spec));
     TeamTrace team(static_cast<std::size_t>(spec.robots), kManager);
     TraceSelection selection;
     selection.kinds = {"uart", "packet"};
-    RecordedTrace(request.out, selection).for_each_checked([&](const cosim::TraceRow& row) {
-        team.add(row);
-    });
+    RecordedTrace(results, selection).for_each_checked([&](const cosim::TraceRow& row) { team.add(row); });
     if (team.messages().empty())
         throw RunError("no robot sent a message to all over UART2: the image must do as firmware/network");
-    fs::remove(request.out / "trace.csv", failed);  // some 100 kB a second and robot
+    std::error_code ignored;
+    fs::remove(results / "trace.csv", ignored);  // some 100 kB a second and robot
     return pauses_of(team.messages(), kConnecting, spec.seconds - kReceiving);
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/text_file.h"
-#include "run/run_scenario.h"
+#include "reproductions/runs/scratch_run.h"
 
 #include <fmt/format.h>
 
@@ -104,27 +104,18 @@ physics::PathPoint Trial::at(std::size_t robot, double seconds) const {
 }
 
 Trial run_trial(const TrialSpec& spec) {
-    std::error_code failed;
-    fs::remove_all(spec.folder, failed);
-    make_folder(spec.folder);
-    RunRequest request;
-    request.scenario = write_scenario(spec);
-    request.out = spec.folder / "results";
-    request.overlay = spec.overlay;
-    request.in_process = true;
-    const RunSetup setup = set_up(request);
-    const cosim::InterruptGuard interrupt;
-    const cosim::Outcome outcome = run_scenario(setup, request, {}, &interrupt);
-    if (!outcome.success || outcome.reason == cosim::EndReason::Interrupted) throw RunError(outcome.text);
+    empty_folder(spec.folder);
+    const fs::path results = run_beside(write_scenario(spec), spec.overlay);
     Trial trial;
-    trial.lines = read_lines(request.out / "trace.csv", spec.robots);
-    const physics::Paths paths = physics::read_paths(request.out / "trajectory.csv");
+    trial.lines = read_lines(results / "trace.csv", spec.robots);
+    const physics::Paths paths = physics::read_paths(results / "trajectory.csv");
     for (const TrialRobot& robot : spec.robots) {
         const auto found = std::find_if(paths.begin(), paths.end(),
                                         [&](const auto& path) { return path.first == robot.name; });
         trial.paths.push_back(found == paths.end() ? std::vector<physics::PathPoint>{} : found->second);
     }
-    fs::remove(request.out / "trace.csv", failed);  // some 200 kB a second and robot
+    std::error_code ignored;
+    fs::remove(results / "trace.csv", ignored);  // some 200 kB a second and robot
     return trial;
 }
 

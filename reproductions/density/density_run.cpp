@@ -4,7 +4,7 @@
 #include "base/shipped_files.h"
 #include "base/text_file.h"
 #include "reproductions/density/density.h"
-#include "run/run_scenario.h"
+#include "reproductions/runs/scratch_run.h"
 #include "scenarios/tables/world_tables.h"
 #include "traces/rab_losses/results.h"
 
@@ -49,25 +49,17 @@ fs::path write_scenario(const DensitySpec& spec) {
 }  // namespace
 
 Density run_density(const DensitySpec& spec) {
-    std::error_code failed;
-    fs::remove_all(spec.folder, failed);
-    make_folder(spec.folder);
-    RunRequest request;
-    request.scenario = write_scenario(spec);
-    request.out = spec.folder / "results";
-    request.in_process = true;
-    const RunSetup setup = set_up(request);
-    const cosim::InterruptGuard interrupt;
-    const cosim::Outcome outcome = run_scenario(setup, request, {}, &interrupt);
-    if (!outcome.success || outcome.reason == cosim::EndReason::Interrupted) throw RunError(outcome.text);
+    empty_folder(spec.folder);
+    const fs::path results = run_beside(write_scenario(spec));
     const double to = kBegun + spec.seconds;
-    const RabResults results = read_rab_results(request.out, kBegun, to);
-    if (results.on_air.empty())
+    const RabResults heard = read_rab_results(results, kBegun, to);
+    if (heard.on_air.empty())
         throw RunError(
             fmt::format("{}: no board sent anything: is it a range-and-bearing image that is ready at once?",
                         spec.firmware.string()));
-    const Density density = density_of(results.losses.fates, kBegun, to);
-    fs::remove_all(request.out, failed);  // some 10 MB a second of twenty robots
+    const Density density = density_of(heard.losses.fates, kBegun, to);
+    std::error_code ignored;
+    fs::remove_all(results, ignored);  // some 10 MB a second of twenty robots
     return density;
 }
 

@@ -146,6 +146,7 @@ const std::vector<std::string> kFolders = {
     "campaigns/statistics",
     "campaigns/jobs",
     "campaigns",
+    "reproductions/runs",
     "reproductions/density",
     "reproductions",
     "benchmark",
