@@ -98,6 +98,16 @@ class Images(InFolder):
         self.refused(puckloop("images", "BTcom_defalt.hex"), "BTcom_default.hex")
 
 
+class Names(InFolder):
+    def test_a_shipped_experiment_is_found_by_its_name(self):
+        (self.folder / "e").mkdir()
+        (self.folder / "e/diary.txt").write_text("mine")
+        (self.folder / "e/experiment.db").write_text("mine")
+        for name in ("aggregation_machine", "aggregation_machine.toml", "scenarios/experiments/aggregation_machine.toml"):
+            # Found and read: what it is refused for is the folder for its results.
+            self.refused(puckloop("experiment", name, "--out", "e", folder=self.folder), "experiment.db")
+        self.refused(puckloop("experiment", "nowhere_at_all", folder=self.folder), "nowhere_at_all")
+
 class Check(InFolder):
     def test_a_scenario_and_a_campaign_without_running(self):
         for name in ("scenarios/hello.toml", "scenarios/swarm.toml", "campaigns/own.toml"):

@@ -34,12 +34,13 @@ class New(InFolder):
             self.skipTest("no C compiler")
         ends = []
         for program in ("controller.py", "controller"):
-            ended = puckloop("run", project / "robot.toml", "--in-process", "--duration", "4 s", "--out",
+            ended = puckloop("run", project / "robot.toml", "--in-process", "--out",
                              self.folder / program, "--linux", project / program)
             self.assertEqual(ended.returncode, 0, ended.stderr)
             report = json.loads((self.folder / program / "report.json").read_text())
             ends.append(report["nodes"]["robot0.pic"]["wheel_steps"])
-        self.assertEqual(ends[0], ends[1])
+        for wheel, steps in ends[0].items():
+            self.assertAlmostEqual(steps, ends[1][wheel], delta=5)  # of some 7000: their calls take other times
 
     def test_names_that_cannot_be(self):
         for name in ("", "../x", "a b", "x" * 65):

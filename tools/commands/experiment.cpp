@@ -7,6 +7,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+#include "tools/guide/scenario_name.h"
 
 #include <fmt/format.h>
 
@@ -107,6 +108,7 @@ void declare_experiment(Command& app, int& status) {
                     "  puckloop experiment scenarios/experiments/aggregation.toml --against robots.csv\n"
                     "  puckloop experiment out/aggregation --again 12");
     command->callback([options, &status] {
+        if (options->again == 0) options->experiment.file = experiment_named(options->experiment.file);
         options->share.tasks = options->experiment.tasks;
         status = conduct(*options);
     });

@@ -113,6 +113,7 @@ int list_parameters(const RunRequest& request) {
 int run_scenario_file(RunOptions& options) {
     RunRequest& request = options.request;
     request.scenario = scenario_named(request.scenario);
+    request.mission = scenario_named(request.mission);
     if (options.list_parameters) return list_parameters(request);
     if (request.scenario.empty() && request.from.empty())
         throw InputError("", "run", "no scenario given", "a file such as scenarios/hello.toml");

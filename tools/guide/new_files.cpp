@@ -14,7 +14,8 @@ constexpr std::string_view kScenario = R"(#:schema ./scenario.schema.json
 #   puckloop run NAME.toml --in-process
 
 [run]
-seed = 1 # the run ends when the controller does, after 20 s
+seed = 1
+duration = "60 s" # at most: the run ends when the controller does, after 20 s
 
 [arena]
 size = ["1.2 m", "90 cm"]
@@ -35,12 +36,23 @@ firmware = "own" # or your image: "my_firmware.hex", relative to this file
 [robot.linux]
 program = ["./controller.py"] # or "./controller", which `make` builds from controller.c
 start = "1 s"
+
+# The run fails where this does not happen: a controller that waits for the robot for ever, say.
+[[expect]]
+log = "robot0.linux"
+text = "done"
 )";
 
 constexpr std::string_view kPython = R"(#!/usr/bin/python3
-"""Drives an e-puck by its serial line, on the robot as here (puckloop: docs/linux-programs.md)."""
+"""Drives an e-puck by its serial line, on the robot as here (puckloop: docs/linux-programs.md, docs/framing.md).
+
+The robot sends records of 72 bytes: accelerometer from 0, then from 8 eight proximity sensors, clockwise from front
+right, 16 bits each, little-endian, ... It takes 12 bytes: both wheels' speeds in motor steps/s, ..., the order ("N": go
+on, "R": end of the session).
+"""
 
 import os
+import select
 import struct
 import termios
 import time
@@ -52,6 +64,8 @@ CYCLES = 190  # of 100 ms
 def read_exactly(port: int, count: int) -> bytes:
     data = b""
     while len(data) < count:
+        if not select.select([port], [], [], 5)[0]:
+            raise SystemExit(f"the robot is silent: {len(data)} bytes of {count} have come")
         data += os.read(port, count - len(data))
     return data
 
@@ -82,6 +96,7 @@ if __name__ == "__main__":
 constexpr std::string_view kC =
     R"(/* The same as controller.py: drives until something is in the way, and turns. */
 #include <fcntl.h>
+#include <poll.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -90,6 +105,11 @@ constexpr std::string_view kC =
 
 static void read_exactly(int port, uint8_t *data, size_t count) {
     while (count > 0) {
+        struct pollfd ready = {port, POLLIN, 0};
+        if (poll(&ready, 1, 5000) <= 0) {
+            fprintf(stderr, "the robot is silent: %zu bytes have not come\n", count);
+            _exit(1);
+        }
         ssize_t got = read(port, data, count);
         if (got <= 0) _exit(1);
         data += got;
@@ -164,7 +184,7 @@ class Drive(unittest.TestCase):
         cls.out = pathlib.Path(cls.folder.name)
         cls.run_ = subprocess.run(
             [PUCKLOOP, "run", HERE / "NAME.toml", "--in-process", "--out", cls.out],
-            capture_output=True, text=True, check=False)
+            capture_output=True, text=True, check=False, timeout=300)
 
     @classmethod
     def tearDownClass(cls) -> None:

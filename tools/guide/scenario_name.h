@@ -9,4 +9,7 @@ namespace puckloop::tools {
 /// `given` again, whose reader then refuses it. Throws InputError where the file is a firmware image.
 std::filesystem::path scenario_named(const std::filesystem::path& given);
 
+/// The same of an experiment file ("aggregation_machine", "scenarios/experiments/aggregation.toml").
+std::filesystem::path experiment_named(const std::filesystem::path& given);
+
 }  // namespace puckloop::tools
