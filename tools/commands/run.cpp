@@ -13,6 +13,7 @@
 #include "run/run_scenario.h"
 #include "run/setup.h"
 #include "run/snapshots/snapshot_plan.h"
+#include "scenarios/argos/import.h"
 #include "scenarios/reader/read_scenario.h"
 #include "scenarios/values/quantity.h"
 #include "tools/cli/check.h"
@@ -137,6 +138,12 @@ int run_scenario_file(RunOptions& options) {
     if (options.control) let_client_drive(setup, request);
     for (const std::string& note : setup.scenario.not_taken)
         fmt::print(stderr, "{}: {}\n", request.scenario.string(), note);
+    if (argos::is_experiment(request.scenario) && request.linux_command.empty())
+        fmt::print(
+            stderr,
+            "{}: the simulator's controllers are not executed: robots have no program (expected --linux "
+            "PROGRAM, built for the real robot)\n",
+            request.scenario.string());
     const cosim::InterruptGuard interrupt;
     if (setup.ready > 0)
         fmt::print(stderr, "the first {:g} s are not paced: the boards boot\n",
