@@ -208,13 +208,13 @@ std::string html_text(const Results& results, const PageOfCase& page) {
         style += fmt::format(".{}{{background:{};color:{}}}\n", look.name, look.colour,
                              std::string_view("pclh").find(look.name[0]) != std::string_view::npos ? "#fff"
                                                                                                    : "#222");
-    const std::string name = escaped(results.campaign.file.filename().string());
-    std::string html = html_head("Fault campaign " + results.campaign.file.filename().string(), style);
-    html += fmt::format("<h1>Fault campaign {}</h1>\n<p>{}. Each case is one run with one or two faults, "
+    const std::string title = "Fault campaign " + results.campaign.file.filename().string();
+    std::string html = html_head(title, style);
+    html += fmt::format("<h1>{}</h1>\n<p>{}. Each case is one run with one or two faults, "
                         "compared with a nominal "
                         "run that has none. Exact definitions of the outcomes are in docs/faults.md.</p>\n"
                         "<table><tr><th>outcome</th><th>sign</th><th>cases</th><th>what it means</th></tr>\n",
-                        name, escaped(subject(results.campaign)));
+                        escaped(title), escaped(subject(results.campaign)));
     for (const Look& look : kLooks) {
         const auto count =
             std::count_if(results.results.begin(), results.results.end(),

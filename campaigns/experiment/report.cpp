@@ -137,6 +137,13 @@ std::string agreement_html(const Agreement& agreement, const std::filesystem::pa
            list("In the reference only", agreement.only_there);
 }
 
+/// The cells that say which run it is.
+std::string run_cells(const Findings& findings, const Run& run) {
+    return text_cell(findings.experiment.programs[run.program].name) +
+           text_cell(findings.experiment.conditions[run.condition].name) +
+           fmt::format("<td class=n>{}</td>", run.seed);
+}
+
 /// With links to their pages.
 std::string all_runs(const Findings& findings, const PageOfRun& page) {
     std::string html = "<h2>Runs</h2>\n<p>A number opens the run in the viewer.</p>\n<table>" +
@@ -145,9 +152,7 @@ std::string all_runs(const Findings& findings, const PageOfRun& page) {
         const auto found = findings.results.find(run.id);
         if (found == findings.results.end()) continue;
         html += fmt::format("<tr><td class=n><a href=\"{}\">{}</a></td>", escaped(page(run)), run.id) +
-                text_cell(findings.experiment.programs[run.program].name) +
-                text_cell(findings.experiment.conditions[run.condition].name) +
-                fmt::format("<td class=n>{}</td>", run.seed) +
+                run_cells(findings, run) +
                 (found->second.score ? number(*found->second.score) : text_cell("none")) + "</tr>\n";
     }
     return html + "</table>\n";
@@ -158,10 +163,8 @@ std::string failures(const Findings& findings) {
     for (const Run& run : runs_of(findings.experiment)) {
         const auto found = findings.results.find(run.id);
         if (found == findings.results.end() || found->second.failed.empty()) continue;
-        html += fmt::format("<tr><td class=n>{}</td>", run.id) +
-                text_cell(findings.experiment.programs[run.program].name) +
-                text_cell(findings.experiment.conditions[run.condition].name) +
-                fmt::format("<td class=n>{}</td>", run.seed) + text_cell(found->second.failed) + "</tr>\n";
+        html += fmt::format("<tr><td class=n>{}</td>", run.id) + run_cells(findings, run) +
+                text_cell(found->second.failed) + "</tr>\n";
     }
     if (html.empty()) return {};
     return "<h2>Runs that failed</h2>\n<p>Their scores do not count.</p>\n<table>" +

@@ -1,6 +1,7 @@
 #include "campaigns/jobs/pool.h"
 
 #include "base/error.h"
+#include "campaigns/jobs/own_process.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,6 @@
 #include <string>
 
 #include <poll.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -35,14 +35,7 @@ class Worker {
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-        std::vector<std::string> words{"puckloop"};
-        words.insert(words.end(), options.crew.words.begin(), options.crew.words.end());
-        std::vector<char*> arguments;
-        for (std::string& word : words)
-            arguments.push_back(word.data());
-        arguments.push_back(nullptr);
-        const int error = ::posix_spawn(&id_, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
-        posix_spawn_file_actions_destroy(&actions);
+        const int error = start_self(options.crew.words, actions, id_);
         ::close(ends[1]);
         socket_ = ends[0];
         if (error != 0) {

@@ -175,10 +175,7 @@ void declare_view(Command& app, int&) {
                 throw InputError(options->folder, "--at", "its run goes on", "the end of the run");
             if (!options->file.empty())
                 throw InputError(options->folder, "--export", "its run goes on", "the end of the run");
-            try {
-                return serve_live(options->folder, options->port);
-            } catch (const view::NobodyThere&) {  // it was killed: what it recorded is shown
-            }
+            return serve_live(options->folder, options->port);
         }
         if (auto runs = many_runs(options->folder)) return serve_runs(std::move(*runs), *options);
         if (options->at && !options->file.empty())

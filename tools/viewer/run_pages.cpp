@@ -9,6 +9,7 @@
 #include "campaigns/engine/html.h"
 #include "campaigns/engine/prefixes.h"
 #include "campaigns/experiment/again.h"
+#include "campaigns/jobs/own_process.h"
 #include "cosim/core/time.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,6 @@
 #include <iterator>
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -112,13 +112,7 @@ class RunPages::Again {
         posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output_.c_str(),
                                          O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0600);
         posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-        words.insert(words.begin(), "puckloop");
-        std::vector<char*> arguments;
-        for (std::string& word : words)
-            arguments.push_back(word.data());
-        arguments.push_back(nullptr);
-        const int error = ::posix_spawn(&id_, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
-        posix_spawn_file_actions_destroy(&actions);
+        const int error = jobs::start_self(std::move(words), actions, id_);
         if (error != 0) throw RunError(fmt::format("the run cannot be started: {}", std::strerror(error)));
     }
     ~Again() {

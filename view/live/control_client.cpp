@@ -60,10 +60,9 @@ ControlClient::ControlClient(const fs::path& folder) {
         ::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
         const int reason = errno;
         if (socket_ >= 0) ::close(socket_);
-        const std::string problem = fmt::format("its run does not answer: {}", std::strerror(reason));
-        if (reason == ECONNREFUSED || reason == ENOENT)
-            throw NobodyThere(folder.string(), "", problem, "a run that goes on and has no other client");
-        throw InputError(folder.string(), "", problem, "a run that goes on and has no other client");
+        throw InputError(folder.string(), "",
+                         fmt::format("its run does not answer: {}", std::strerror(reason)),
+                         "a run that goes on and has no other client");
     }
     try {
         greeting_ = next_line();

@@ -1,18 +1,10 @@
 #pragma once
 // A client's end of the control protocol (docs/control_protocol.md): one line of JSON each way.
 
-#include "base/error.h"
-
 #include <filesystem>
 #include <string>
 
 namespace puckloop::view {
-
-/// The run that control.json names was killed.
-class NobodyThere : public InputError {
-  public:
-    using InputError::InputError;
-};
 
 class ControlClient {
   public:

@@ -126,6 +126,9 @@ class App {
 
   async readEvents() {
     const { run } = this;
+    for (let part; (part = await this.source.tracked(run.tracked.bytes)).byteLength > 0;) run.tracked.append(part);
+    element('tracker-part').hidden = run.tracked.times.length === 0;
+    if (run.head.arena && run.head.arena.trails.length > 0) run.trails = parseTrails(await this.source.trails());
     for (;;) {
       const status = await this.source.status();
       if (passOf(status.generation) === this.stale) return;  // from before the run went back
@@ -143,9 +146,6 @@ class App {
         run.beams = parseBeams(await this.source.beams());
         this.legend();
       }
-      for (let part; (part = await this.source.tracked(run.tracked.bytes)).byteLength > 0;) run.tracked.append(part);
-      element('tracker-part').hidden = run.tracked.times.length === 0;
-      if (this.run.head.arena && this.run.head.arena.trails.length > 0) run.trails = parseTrails(await this.source.trails());
       this.rows();
       run.redraw();
       element('progress').value = status.progress;

@@ -250,8 +250,10 @@ std::string Recording::trails() const {
 std::string Recording::tail(Rows rows, std::size_t from) const {
     constexpr std::array kFiles{"objects.csv", "trajectory.csv", "tracker.csv"};
     std::ifstream in(folder_ / kFiles[static_cast<std::size_t>(rows)], std::ios::binary);
-    std::string text(kMostTail, '\0');
-    if (!in || !in.seekg(static_cast<std::streamoff>(from))) return {};
+    if (!in || !in.seekg(0, std::ios::end)) return {};
+    const auto size = static_cast<std::size_t>(in.tellg());
+    if (size <= from || !in.seekg(static_cast<std::streamoff>(from))) return {};
+    std::string text(std::min(size - from, kMostTail), '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));
     const std::size_t end = text.rfind('\n');
