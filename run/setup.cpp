@@ -10,7 +10,7 @@
 #include "emu/rab_board/signals.h"
 #include "physics/description/channels.h"
 #include "run/control/control_place.h"
-#include "run/expectations/judge_expectations.h"
+#include "run/expectations/plan_expectations.h"
 #include "run/files/program_path.h"
 #include "run/files/writable_file.h"
 #include "run/nodes/bluetooth_nodes.h"
@@ -236,7 +236,7 @@ void debug_board(RunSetup& setup, const std::string& assignment) {
         if (!has_board(node.what)) continue;
         known += (known.empty() ? "" : ", ") + node.name;
         if (node.name != name || equals == assignment.size()) continue;
-        node.what.care = {.gdb = assignment.substr(equals + 1), .stats = node.what.care.stats};
+        node.what.care = {.gdb = assignment.substr(equals + 1), .stats = node.what.care.stats, .watches = node.what.care.watches};
         node.in_process = true;
         node.any_thread = false;
         return;
@@ -310,7 +310,7 @@ RunSetup set_up(const RunRequest& request) {
         debug_board(setup, assignment);
     plan_stats(setup, request);
     plan_snapshots(setup, request);
-    check_expectations(setup);
+    plan_expectations(setup, request);
     for (const auto& file : {request.junit, request.tap})
         if (!file.empty()) check_writable(file);
     return setup;

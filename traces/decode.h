@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -15,12 +16,15 @@
 
 namespace puckloop::tools {
 
+/// What DecodedFrame::protocol can be.
+inline constexpr std::array<const char*, 11> kProtocols{"epuck", "xbee",  "bytes", "bluetooth", "i2c",  "can",
+                                                        "rab",   "ircom", "mesh",  "ip",        "fault"};
+
 struct DecodedFrame {
     cosim::Time begin = 0;  ///< first bit on the line or air
     cosim::Time end = 0;    ///< the last bit is there
     std::string link, from;
-    std::string
-        protocol;  ///< "epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "mesh", "rab", "ircom", "fault"
+    std::string protocol;  ///< of kProtocols
     std::string text;
     std::vector<std::string> errors;  ///< what is wrong with it, and what faults did to it
     nlohmann::ordered_json fields = nlohmann::ordered_json::object();

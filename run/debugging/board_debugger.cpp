@@ -1,8 +1,8 @@
 #include "run/debugging/board_debugger.h"
 
 #include "base/error.h"
+#include "run/chips/board_chip.h"
 #include "run/debugging/run_debuggers.h"
-#include "run/stats/board_chip.h"
 
 #include <fmt/format.h>
 

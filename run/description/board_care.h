@@ -3,9 +3,11 @@
 
 #include "base/fields/field.h"
 #include "cosim/core/time.h"
+#include "run/chips/chip_watch.h"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace puckloop::tools {
 
@@ -43,6 +45,7 @@ struct BoardCare {
     std::optional<SaveState> save_state{};
     std::string gdb{};
     bool stats = false;
+    std::vector<ChipWatch> watches{};
 
     template <class Visitor>
     static constexpr auto fields(Visitor&& visit) {
@@ -50,7 +53,8 @@ struct BoardCare {
             field("from_state", &BoardCare::from_state, "what the board begins with; none: power-up"),
             field("save_state", &BoardCare::save_state, "where its state goes; none: nowhere"),
             field("gdb", &BoardCare::gdb, "place of its debugger; empty: none"),
-            field("stats", &BoardCare::stats, "the chip is profiled"));
+            field("stats", &BoardCare::stats, "the chip is profiled"),
+            field("watches", &BoardCare::watches, "values of the chip that are expected"));
     }
 };
 static_assert(lists_all_fields<BoardCare>);

@@ -2,13 +2,12 @@
 // What the client of a driven run reads and writes of a board: registers by their data-sheet names, variables
 // by the image's symbols, memory by address of data space.
 
-#include "debug/places.h"
+#include "run/chips/chip_values.h"
 #include "run/driven/driven_node.h"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -16,12 +15,12 @@ namespace puckloop::tools {
 
 class BoardAccess {
   public:
-    /// `firmware`: its image, of an AVR or of a dsPIC. Throws InputError: it cannot be read.
-    BoardAccess(DrivenNode& node, const std::string& firmware, bool avr);
+    /// `firmware`: its image. Throws InputError: it cannot be read.
+    BoardAccess(DrivenNode& node, const std::string& firmware);
 
     /// `request` has "register" (and "field"), "variable" or "memory" (and "bytes"). Throws InputError for
     /// what there is not.
-    nlohmann::ordered_json read(const nlohmann::json& request) const;
+    nlohmann::ordered_json read(const nlohmann::json& request) const { return values_.read(request); }
     /// The same with "value", or "data" in hexadecimal.
     void write(const nlohmann::json& request);
     /// Where its program is: "pc", "place" ("main+0x12") and "line" ("main.c:43") where the image has them,
@@ -33,29 +32,14 @@ class BoardAccess {
     void use_image(const std::string& file);
 
   private:
-    struct Place {
-        std::uint32_t address = 0;  ///< as a debugger has it
-        std::uint32_t bytes = 0;
-    };
-    Place variable(const std::string& name) const;
-    Place place_of(const nlohmann::json& request) const;
-    nlohmann::ordered_json read_register(std::string name) const;
-    nlohmann::ordered_json read_field(const std::string& name, const std::string& field) const;
     void write_register(std::string name, std::uint64_t value);
     void write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
-
-    void read_names(const std::string& file);
     nlohmann::ordered_json stack() const;
     nlohmann::ordered_json interrupts() const;
 
-    struct Variable {
-        std::uint32_t address = 0, bytes = 0;  ///< data address; bytes 0: the image does not say
-    };
     DrivenNode& node_;
-    std::string first_image_, image_;
-    bool avr_;
-    std::map<std::string, Variable> variables_;
-    debug::Places places_;
+    std::string first_image_;
+    ChipValues values_;
 };
 
 }  // namespace puckloop::tools

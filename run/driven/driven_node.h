@@ -4,7 +4,7 @@
 
 #include "cosim/core/stateful_node.h"
 #include "emu/chip/instrument.h"
-#include "run/stats/board_chip.h"
+#include "run/chips/board_chip.h"
 
 #include <cstdint>
 #include <functional>

@@ -7,6 +7,7 @@
 #include "cosim/faults/spec/typed_bytes.h"
 #include "cosim/resume/snapshot_faults.h"
 #include "cosim/resume/state_file.h"
+#include "run/chips/value_words.h"
 #include "run/control/control_place.h"
 #include "run/driven/possible_actions.h"
 #include "run/driven/possible_faults.h"
@@ -141,9 +142,8 @@ std::unique_ptr<cosim::Node> DrivenRun::make_node(const std::string& text) {
     // At power-up: what it was in a snapshot is loaded into it.
     auto node = std::make_unique<DrivenNode>(make_board(description));
     const BoardFields fields = board_fields(description);
-    const bool avr = std::holds_alternative<tam::TamSpec>(description.kind);
     if (counted_.contains(fields.name)) node->count_interrupts(true);
-    boards_[fields.name] = std::make_unique<BoardAccess>(*node, fields.firmware, avr);
+    boards_[fields.name] = std::make_unique<BoardAccess>(*node, fields.firmware);
     return node;
 }
 
@@ -248,15 +248,7 @@ bool DrivenRun::met() {
 
 bool DrivenRun::compare(const json& condition) {
     const auto value = board(condition).read(condition).at("value").get<std::uint64_t>();
-    const std::string is = condition.value("is", "==");
-    const auto other = condition.at("value").get<std::uint64_t>();
-    if (is == "==") return value == other;
-    if (is == "!=") return value != other;
-    if (is == "<") return value < other;
-    if (is == ">") return value > other;
-    if (is == "<=") return value <= other;
-    if (is == ">=") return value >= other;
-    throw InputError("", "is", fmt::format("'{}' compares nothing", is), "==, !=, <, >, <= or >=");
+    return comparison_holds(value, condition.value("is", "=="), condition.at("value").get<std::uint64_t>());
 }
 
 void DrivenRun::serve(const TakeSnapshot& take) {

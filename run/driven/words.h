@@ -9,18 +9,11 @@
 
 namespace puckloop::tools {
 
-/// "TMR1" (a register, as data sheets write them, or w0), "U2STA.TRMT" (a field), "counter" (a variable) or
-/// "0x850:4" (memory) as keys of `read`. Throws InputError: none of these.
-nlohmann::json place_of_words(std::string_view text);
-
 /// `TMR1 >= 9` (of `board`), `robot0.pic counter == 3`, `text "ok"`, `frame link=robot0.uart value=4e` as
 /// `until` of a step. Throws InputError.
 nlohmann::json condition_of_words(std::string_view text, const std::string& board);
 
 /// `link=robot0.uart value=4e` as `frame` of a condition or of `capture`. Throws InputError.
 nlohmann::json frame_of_words(std::string_view text);
-
-/// What `read` gave, for people: "0x3723 14115", a register's fields that are not 0 behind it.
-std::string value_text(const nlohmann::ordered_json& reply);
 
 }  // namespace puckloop::tools

@@ -1,16 +1,18 @@
 #include "run/expectations/judge_expectations.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
 #include "physics/render/path_file.h"
+#include "run/expectations/judge_frames.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
-#include <string_view>
+#include <map>
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -19,23 +21,6 @@ namespace {
 using nlohmann::json;
 using scenarios::Expectation;
 using Kind = Expectation::Kind;
-
-std::vector<std::string_view> names_for(const RunSetup& setup, Kind kind) {
-    std::vector<std::string_view> names;
-    if (kind == Kind::Line) {
-        for (const cosim::LinkSpec& link : setup.links)
-            if (link.nominal_baud > 0.0) names.push_back(link.name);
-    } else if (kind == Kind::Place) {
-        for (const auto& robot : setup.scenario.robots)
-            names.push_back(robot.name);
-    } else {
-        for (const PlannedNode& node : setup.nodes)
-            names.push_back(node.name);
-    }
-    return names;
-}
-
-constexpr const char* kWhat[]{"node", "serial line", "robot", "node"};
 
 /// Whether something was seen that should be, or should not.
 void decide(ExpectationResult& result, const Expectation& expected, bool seen) {
@@ -56,10 +41,12 @@ void judge_log(ExpectationResult& result, const Expectation& expected, const Run
     decide(result, expected, found > 0);
 }
 
-void judge_line(ExpectationResult& result, const Expectation& expected, std::optional<double> seen) {
-    result.at = seen;
-    result.why = seen ? fmt::format("seen at {:.6f} s", *seen) : "not seen";
-    decide(result, expected, seen.has_value());
+void judge_line(ExpectationResult& result, const Expectation& expected, const LineWatch& lines,
+                std::size_t index) {
+    result.at = lines.seen_at(index);
+    result.why =
+        result.at ? fmt::format("seen at {:.6f} s", *result.at) : "not seen: " + lines.what_came(index);
+    decide(result, expected, result.at.has_value());
 }
 
 void judge_place(ExpectationResult& result, const Expectation& expected, const physics::Paths& paths) {
@@ -86,20 +73,82 @@ void judge_place(ExpectationResult& result, const Expectation& expected, const p
     decide(result, expected, result.at.has_value());
 }
 
+/// Null: the node could not report.
+json report_of(const cosim::Outcome& outcome, const std::string& name) {
+    for (const auto& node : outcome.nodes)
+        if (node.name == name) return json::parse(node.json, nullptr, false);
+    return {};
+}
+
 void judge_resets(ExpectationResult& result, const Expectation& expected, const cosim::Outcome& outcome) {
-    for (const auto& node : outcome.nodes) {
-        if (node.name != expected.subject) continue;
-        const json report = json::parse(node.json, nullptr, false);
-        if (!report.is_object() || !report.contains("resets")) break;
-        const json& resets = report["resets"];
-        result.met = resets.size() <= 1;
-        result.why = "one start";
-        if (result.met) return;
-        result.at = resets[1].value("time_s", 0.0);
-        result.why = fmt::format("reset at {:.6f} s ({})", *result.at, resets[1].value("cause", "no cause"));
+    const json report = report_of(outcome, expected.subject);
+    if (!report.is_object() || !report.contains("resets")) {
+        result.why = "the node reported no resets";
         return;
     }
-    result.why = "the node reported no resets";
+    const json& resets = report["resets"];
+    result.met = resets.size() <= 1;
+    result.why = "one start";
+    if (result.met) return;
+    result.at = resets[1].value("time_s", 0.0);
+    result.why = fmt::format("reset at {:.6f} s ({})", *result.at, resets[1].value("cause", "no cause"));
+}
+
+/// `number`: of the board's watches.
+void judge_value(ExpectationResult& result, const Expectation& expected, const cosim::Outcome& outcome,
+                 std::size_t number) {
+    const json report = report_of(outcome, expected.subject);
+    if (!report.is_object() || !report.contains("watches") || report["watches"].size() <= number) {
+        result.why = "the board could not report";
+        return;
+    }
+    const json& watch = report["watches"][number];
+    if (watch.contains("seen_s")) result.at = watch["seen_s"].get<double>();
+    const std::string last = watch.contains("last")
+                                 ? fmt::format("{} (0x{:x})", watch["last"].get<std::uint64_t>(),
+                                               watch["last"].get<std::uint64_t>())
+                                 : "";
+    result.why = result.at      ? fmt::format("it was {} at {:.6f} s", last, *result.at)
+                 : last.empty() ? "the run ended before the first look"
+                                : fmt::format("it was {} at {:.6f} s, the last look", last,
+                                              watch["last_s"].get<double>());
+    decide(result, expected, result.at.has_value());
+}
+
+/// What a receiver counts of characters that did not come as they were sent.
+std::string losses_at(const json& counters) {
+    std::string text;
+    for (const char* what : {"framing_errors", "parity_errors", "overruns", "buffer_overruns", "overflow",
+                             "while_down", "while_asleep"}) {
+        const auto count = counters.value(what, std::uint64_t{0});
+        std::string words = what;
+        std::replace(words.begin(), words.end(), '_', ' ');
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
+    }
+    return text;
+}
+
+void judge_loss(ExpectationResult& result, const Expectation& expected, const cosim::Outcome& outcome) {
+    std::vector<std::string> lost;
+    for (const auto& link : outcome.links) {
+        if (link.name != expected.subject) continue;
+        for (const auto& [from, stats] :
+             {std::pair{&link.a, &link.from_a}, std::pair{&link.b, &link.from_b}}) {
+            if (stats->faults > 0)
+                lost.push_back(fmt::format("{} from {} harmed by faults", stats->faults, *from));
+            if (stats->uart_off_rate > 0)
+                lost.push_back(fmt::format("{} from {} at another rate", stats->uart_off_rate, *from));
+        }
+        for (const std::string& end : {link.a, link.b}) {
+            const std::size_t dot = end.rfind('.');
+            const json report = report_of(outcome, end.substr(0, dot));
+            const std::string port = end.substr(dot + 1);
+            if (!report.is_object() || !report.contains(port) || !report[port].is_object()) continue;
+            if (const std::string at = losses_at(report[port]); !at.empty()) lost.push_back(end + ": " + at);
+        }
+    }
+    result.met = lost.empty();
+    result.why = lost.empty() ? "nothing was lost" : fmt::format("{}", fmt::join(lost, "; "));
 }
 
 /// The world's record; of a run that did not begin there is none.
@@ -113,27 +162,13 @@ physics::Paths paths_of(const RunSetup& setup) {
 
 }  // namespace
 
-void check_expectations(const RunSetup& setup) {
-    const auto check = [&](const Expectation& expected, const std::string& name, Kind kind) {
-        const auto known = names_for(setup, kind);
-        if (std::find(known.begin(), known.end(), name) != known.end()) return;
-        const char* what = kWhat[static_cast<std::size_t>(kind)];
-        throw InputError(setup.scenario.file.string(), expected.place,
-                         fmt::format("expect: there is no {} '{}'", what, name),
-                         fmt::format("a {} of the run{}", what, did_you_mean(name, known)));
-    };
-    for (const Expectation& expected : setup.scenario.expectations) {
-        check(expected, expected.subject, expected.kind);
-        if (expected.kind == Kind::Line && !expected.from.empty()) check(expected, expected.from, Kind::Log);
-    }
-}
-
 std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const cosim::Outcome& outcome,
                                                   const LineWatch& lines) {
     const std::vector<Expectation>& all = setup.scenario.expectations;
     const bool places =
         std::any_of(all.begin(), all.end(), [](const Expectation& one) { return one.kind == Kind::Place; });
     const physics::Paths paths = places ? paths_of(setup) : physics::Paths{};
+    std::map<std::string, std::size_t> watches;  // so many of the board's were judged
     std::vector<ExpectationResult> results;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Expectation& expected = all[i];
@@ -144,7 +179,7 @@ std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const c
             judge_log(result, expected, setup);
             break;
         case Kind::Line:
-            judge_line(result, expected, lines.seen_at(i));
+            judge_line(result, expected, lines, i);
             break;
         case Kind::Place:
             judge_place(result, expected, paths);
@@ -152,9 +187,18 @@ std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const c
         case Kind::NoReset:
             judge_resets(result, expected, outcome);
             break;
+        case Kind::Value:
+            judge_value(result, expected, outcome, watches[expected.subject]++);
+            break;
+        case Kind::NoLoss:
+            judge_loss(result, expected, outcome);
+            break;
+        case Kind::Frame:
+            break;  // all of them below
         }
         results.push_back(std::move(result));
     }
+    judge_frames(setup.out, all, results);
     return results;
 }
 

@@ -12,10 +12,8 @@
 
 namespace puckloop::tools {
 
-/// Before the run: throws InputError where a table names a node, link or robot that there is not.
-void check_expectations(const RunSetup& setup);
-
-/// After the run, in the order of the tables: from what its nodes reported, from its logs and trajectory.csv.
+/// After the run, in the order of the tables: from what its nodes reported, from its logs, trace and
+/// trajectory.csv.
 std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const cosim::Outcome& outcome,
                                                   const LineWatch& lines);
 

@@ -1,5 +1,7 @@
 #include "run/expectations/line_watch.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace puckloop::tools {
@@ -8,14 +10,28 @@ LineWatch::LineWatch(const std::vector<scenarios::Expectation>& expected) : expe
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (expected[i].kind != scenarios::Expectation::Kind::Line) continue;
         const ByteMatch match(expected[i].text);
-        watches_.push_back({i, std::nullopt, {match, match}, std::nullopt});
+        watches_.push_back({.index = i, .matches = {match, match}});
     }
 }
 
-std::optional<double> LineWatch::seen_at(std::size_t index) const {
+const LineWatch::Watch* LineWatch::watch_of(std::size_t index) const {
     for (const Watch& watch : watches_)
-        if (watch.index == index) return watch.seen;
-    return std::nullopt;
+        if (watch.index == index) return &watch;
+    return nullptr;
+}
+
+std::optional<double> LineWatch::seen_at(std::size_t index) const {
+    const Watch* watch = watch_of(index);
+    return watch == nullptr ? std::nullopt : watch->seen;
+}
+
+std::string LineWatch::what_came(std::size_t index) const {
+    const Watch* watch = watch_of(index);
+    if (watch == nullptr || watch->came == 0) return "no byte came";
+    std::vector<unsigned char> bytes(watch->last.begin(), watch->last.end());
+    return fmt::format("{} came, the last {:02X}",
+                       watch->came == 1 ? "1 byte" : fmt::format("{} bytes", watch->came),
+                       fmt::join(bytes, " "));
 }
 
 void LineWatch::begin(const std::vector<cosim::LinkSpec>& links) {
@@ -34,8 +50,13 @@ void LineWatch::record(const cosim::TraceRecord& record) {
         const cosim::LinkSpec& link = links_[record.link];
         const bool from_a = record.direction == cosim::Direction::FromA;
         if (!expected.from.empty() && expected.from != (from_a ? link.a : link.b).node) continue;
-        const bool complete = watch.matches[from_a ? 0 : 1].add(static_cast<char>(frame->data));
         const double time = cosim::to_seconds(record.time);
+        const bool complete = watch.matches[from_a ? 0 : 1].add(static_cast<char>(frame->data));
+        if (time >= expected.after && time <= expected.by) {
+            ++watch.came;
+            watch.last += static_cast<char>(frame->data);
+            if (watch.last.size() > kShown) watch.last.erase(0, 1);
+        }
         if (complete && time >= expected.after && time <= expected.by) watch.seen = time;
     }
 }

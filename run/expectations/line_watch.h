@@ -6,6 +6,7 @@
 #include "scenarios/description/expectation.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,10 @@ class LineWatch final : public cosim::TraceSink {
         std::optional<std::size_t> link{};
         ByteMatch matches[2]{};  ///< of each direction
         std::optional<double> seen{};
+        std::uint64_t came = 0;  ///< bytes that were looked at
+        std::string last{};      ///< of these, at most kShown
     };
+    static constexpr std::size_t kShown = 12;
 
     /// Of all kinds; those of serial lines are watched. `expected` outlives this.
     explicit LineWatch(const std::vector<scenarios::Expectation>& expected);
@@ -29,6 +33,8 @@ class LineWatch final : public cosim::TraceSink {
     /// When the last byte of the first match arrived within the time that the table states, s; by the table's
     /// index in `expected`.
     std::optional<double> seen_at(std::size_t index) const;
+    /// What came in place of what was expected, for people: "of 312 bytes the last were 4E 00".
+    std::string what_came(std::size_t index) const;
 
     /// For a run that goes back: what was seen until an instant, and that this is all again.
     const std::vector<Watch>& seen() const { return watches_; }
@@ -38,6 +44,8 @@ class LineWatch final : public cosim::TraceSink {
     void record(const cosim::TraceRecord& record) override;
 
   private:
+    const Watch* watch_of(std::size_t index) const;
+
     const std::vector<scenarios::Expectation>& expected_;
     std::vector<cosim::LinkSpec> links_;
     std::vector<Watch> watches_;

@@ -19,12 +19,13 @@
 #include "physics/ir/ir_node.h"
 #include "physics/ircom/ircom_node.h"
 #include "physics/node/world_node.h"
+#include "run/chips/profiled_node.h"
+#include "run/chips/watched_node.h"
 #include "run/control/control_socket.h"
 #include "run/factory/camera_scenery.h"
 #include "run/factory/outside_node.h"
 #include "run/mission/mission_program.h"
 #include "run/states/make_resumed.h"
-#include "run/stats/profiled_node.h"
 
 #include <fmt/format.h>
 
@@ -196,9 +197,12 @@ std::unique_ptr<cosim::StatefulNode> make_board(const NodeDescription& node) {
         [&]<class Kind>(const Kind& kind) -> std::unique_ptr<cosim::StatefulNode> {
             if constexpr (is_board<Kind>) {
                 std::unique_ptr<cosim::StatefulNode> board = make(kind, cosim::carried(node.faults));
-                if (!node.care.stats) return board;
                 NodeDescription copy = node;
-                return make_profiled(std::move(board), board_fields(copy).firmware);
+                const std::string& firmware = board_fields(copy).firmware;
+                if (!node.care.watches.empty())
+                    board = make_watched(std::move(board), firmware, node.care.watches);
+                if (node.care.stats) board = make_profiled(std::move(board), firmware);
+                return board;
             } else {
                 throw std::logic_error("no board");
             }

@@ -14,10 +14,6 @@ namespace {
 
 constexpr const char* kNetwork = "network";
 
-/// Between a computer and the network, each way: part of the latency. More than nothing, so that neither
-/// waits for the other where both are due at the same time.
-constexpr cosim::Time kTransfer = cosim::kMicrosecond;
-
 void add_host(RunSetup& setup, const scenarios::ComputerHost& host, const RunRequest& request) {
     const std::string node = host.name + ".linux";
     LinuxProgram spec = linux_program(setup, node, host.board, request);

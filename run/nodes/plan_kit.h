@@ -13,6 +13,10 @@
 
 namespace puckloop::tools {
 
+/// Between a module's microcontroller and its transceiver, a computer and its network, each way. More than
+/// nothing, so that neither waits for the other where both are due at the same time.
+inline constexpr cosim::Time kTransfer = cosim::kMicrosecond;
+
 /// Names by id, for traces, and ids by name, for the world.
 std::vector<std::string> names_of(std::span<const cosim::SignalInfo> signals);
 std::map<std::string, std::uint16_t> ids_of(std::span<const cosim::SignalInfo> signals);

@@ -18,10 +18,6 @@ using scenarios::XBeeModule;
 
 constexpr double kRadioBaud = 9600.0;  // BD = 3, nominal rate of the lines to modules
 
-/// Between a module's microcontroller and its transceiver. More than nothing, so that neither waits for the
-/// other where both are due at the same time.
-constexpr cosim::Time kTransfer = cosim::kMicrosecond;
-
 /// Frames on a line come no faster: the module's own divider makes 9615 baud, and oscillators are a little
 /// off.
 constexpr double nominal(double baud) {

@@ -8,12 +8,14 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 namespace puckloop::scenarios {
 
 namespace {
 
-constexpr std::array kSubjects{"log", "link", "robot", "no_reset"};
+constexpr std::array kSubjects{"log", "link", "robot", "no_reset", "board", "frame", "no_loss"};
 constexpr std::size_t kMostBytes = 1000;
 constexpr double kLongest = 720.0 * 3600.0;  // s, of a run
 
@@ -64,6 +66,47 @@ void read_place(Reader& table, Expectation& expected) {
                                 expected.seen ? "in" : "never in", expected.region.x, expected.region.y);
 }
 
+void read_value(Reader& table, Expectation& expected) {
+    constexpr double kFinest = 1e-6;
+    expected.text = table.text("holds");
+    expected.every = table.quantity("every", Dimension::Time, expected.every);
+    if (!(expected.every >= kFinest && expected.every <= kLongest))
+        table.fail("every", "every is out of range", "1 us to 720 h");
+    expected.name = fmt::format("{} {} {}", expected.subject, expected.seen ? "has" : "never has",
+                                plain_text(expected.text, 64));
+}
+
+void read_frame(Reader& table, Expectation& expected) {
+    constexpr std::int64_t kMost = 1'000'000'000;
+    expected.from = table.text("from", "");
+    expected.text = table.text("text", "");
+    expected.at_least = table.integer("at_least", 1, 1, kMost);
+    if (!expected.seen && table.has("at_least"))
+        table.fail("at_least", "at_least goes with no seen = false", "one of them");
+    std::string fields;
+    if (const TomlValue* has = table.table("has")) {
+        for (const auto& [key, value] : Reader(table.file(), "has", *has).everything()) {
+            const auto take = [&]<class T>(const T& one) {
+                if constexpr (std::is_same_v<T, TomlArray> || std::is_same_v<T, TomlTable>) {
+                    table.fail("has",
+                               fmt::format("{} is no text, number, true or false", plain_text(key, 64)),
+                               R"({ record = "actuators", left = 500 })");
+                } else {
+                    expected.has.emplace_back(key, one);
+                    fields += fmt::format("{} {}={}", fields.empty() ? " with" : ",", key, one);
+                }
+            };
+            std::visit(take, value.data);
+        }
+    }
+    if (!expected.text.empty()) fields += " '" + expected.text + "'";
+    const bool one = expected.at_least == 1;
+    expected.name = fmt::format("{} {} frame{}{} come{}",
+                                one ? expected.seen ? "one" : "no" : std::to_string(expected.at_least),
+                                expected.subject, one ? "" : "s", plain_text(fields, 96), one ? "s" : "");
+    if (!expected.from.empty()) expected.name += " from " + expected.from;
+}
+
 Expectation read_expectation(const Reader& top, const TomlValue& value, std::size_t number) {
     Reader table(top.file(), fmt::format("expect {}", number), value);
     Expectation expected;
@@ -79,11 +122,12 @@ Expectation read_expectation(const Reader& top, const TomlValue& value, std::siz
         expected.subject = table.text(first);
     }
     if (first == nullptr)
-        table.fail_missing("log",
-                           "or link, robot or no_reset: what something is expected of (docs/expect.md)");
+        table.fail_missing("log", "or link, robot, board, frame, no_reset or no_loss: what something is "
+                                  "expected of (docs/expect.md)");
     using Kind = Expectation::Kind;
-    if (expected.kind != Kind::NoReset) expected.seen = table.flag("seen", true);
-    if (expected.kind == Kind::Line || expected.kind == Kind::Place) {
+    const bool never = expected.kind == Kind::NoReset || expected.kind == Kind::NoLoss;
+    if (!never) expected.seen = table.flag("seen", true);
+    if (!never && expected.kind != Kind::Log) {
         expected.after = instant(table, "after", expected.after);
         expected.by = instant(table, "by", expected.by);
         if (expected.by < expected.after) table.fail("by", "by is before after", "a later instant");
@@ -100,6 +144,15 @@ Expectation read_expectation(const Reader& top, const TomlValue& value, std::siz
         break;
     case Kind::NoReset:
         expected.name = expected.subject + " starts once";
+        break;
+    case Kind::Value:
+        read_value(table, expected);
+        break;
+    case Kind::Frame:
+        read_frame(table, expected);
+        break;
+    case Kind::NoLoss:
+        expected.name = expected.subject + " loses nothing";
         break;
     }
     if (expected.after > 0.0) expected.name += fmt::format(", after {:g} s", expected.after);

@@ -70,3 +70,16 @@ TEST_CASE("bytes count within the time and from the end that the table states") 
     line.carry(20, "x", cosim::Direction::FromB);
     CHECK(line.watch.seen_at(0) == 0.020);
 }
+
+TEST_CASE("what came in place of the bytes is known: how many, and the last of them") {
+    Expectation one = bytes("zz");
+    one.from = "robot0.linux";
+    one.after = 0.011;
+    Line line(one);
+    CHECK(line.watch.what_came(0) == "no byte came");
+    line.carry(10, "ab");
+    line.carry(12, "c", cosim::Direction::FromB);
+    CHECK(line.watch.what_came(0) == "1 byte came, the last 62");
+    line.carry(13, "0123456789abcd");
+    CHECK(line.watch.what_came(0) == "15 bytes came, the last 32 33 34 35 36 37 38 39 61 62 63 64");
+}

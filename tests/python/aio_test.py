@@ -21,7 +21,8 @@ class Asynchronous(InFolder):
             run.capture(link="robot0.uart", sender="robot0.pic")
             step = run.step(for_="1 s", until={"frame": {"link": "robot0.uart", "from": "robot0.pic"}})
             run.board("robot0.pic").set_memory(0x2600, b"\x01")
-            frames, trace = run.frames(), run.end().report["trace_sha256"]
+            frames, decoded = run.frames(), run.decoded("epuck", sender="robot0.pic")
+            trace = run.end().report["trace_sha256"]
 
         async def other():
             async with await aio.start(scenario("1 s"), out=self.folder / "b") as run:
@@ -35,6 +36,9 @@ class Asynchronous(InFolder):
                 with self.assertRaisesRegex(puckloop.RequestError, 'did you mean "TRISA"'):
                     await board.register("TRISAA")
                 self.assertEqual(await run.frames(), frames)
+                self.assertEqual(await run.decoded("epuck", sender="robot0.pic"), decoded)
+                with self.assertRaisesRegex(puckloop.PuckloopError, "epuk"):
+                    await run.decoded("epuk")
                 return (await run.end()).report["trace_sha256"]
 
         self.assertEqual(asyncio.run(other()), trace)

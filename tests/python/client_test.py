@@ -55,6 +55,24 @@ class Client(InFolder):
             step = run.step(for_="20 ms", until={"frame": {"link": "robot0.uart", "value": "zz"}})
             self.assertFalse(step.met)
 
+    def test_frames_so_far_are_decoded(self):
+        with self.begun() as run:
+            run.step(to="1 s")
+            records = run.decoded("epuck")
+            self.assertEqual(records[0].fields["record"], "session")
+            self.assertEqual(records[0].sender, "robot0.linux")
+            self.assertTrue(all(record.end_s <= 1.0 for record in records))
+            wheels = [record.fields["left"] for record in records if record.fields["record"] == "actuators"]
+            self.assertGreater(len(wheels), 3)
+            self.assertEqual({record.sender for record in run.decoded(sender="robot0.pic")}, {"robot0.pic"})
+            with self.assertRaisesRegex(puckloop.PuckloopError, "robot9.pic"):
+                run.decoded(sender="robot9.pic")
+            results = run.results
+            run.end()
+            self.assertGreaterEqual(len(puckloop.decoded(results, "epuck")), len(records))
+        with self.assertRaisesRegex(puckloop.PuckloopError, "nowhere"):
+            puckloop.decoded(self.folder / "nowhere")
+
     def test_registers_and_memory_are_read_and_changed(self):
         with self.begun() as run:
             run.step(to="200 ms")

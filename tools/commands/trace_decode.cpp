@@ -33,11 +33,11 @@ void declare_trace_decode(Command& trace) {
         ->required()
         ->type_name("DIR");
     command
-        ->add_option("--protocol", options->protocols,
-                     "only epuck, xbee, bluetooth, bytes, i2c, rab, ircom, mesh, ip or fault (repeatable)")
+        ->add_option(
+            "--protocol", options->protocols,
+            "only epuck, xbee, bluetooth, bytes, i2c, can, rab, ircom, mesh, ip or fault (repeatable)")
         ->allow_extra_args(false)
-        ->check(one_of(
-            {"epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "rab", "ircom", "mesh", "ip", "fault"}));
+        ->check(one_of({kProtocols.begin(), kProtocols.end()}));
     command->add_flag("--errors", options->errors_only, "only frames with something wrong");
     command->add_flag("--json", options->json, "one JSON object per line");
     add_selection(*command, options->selection);

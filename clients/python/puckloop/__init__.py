@@ -13,11 +13,11 @@ and nothing besides.
 
 from .errors import NobodyServes, ProtocolError, PuckloopError, RequestError, RunEnded, StartError
 from .launch import program
-from .records import Ended, Frame, Register, Stepped, Value
+from .records import Decoded, Ended, Frame, Register, Stepped, Value
 from .run import Board, Dut, Run, attach, from_snapshot, start
 from .scenario import Scenario
-from .tables import dataframe, table
+from .tables import dataframe, decoded, table
 
-__all__ = ["Board", "Dut", "Ended", "Frame", "NobodyServes", "ProtocolError", "PuckloopError", "Register",
+__all__ = ["Board", "Decoded", "Dut", "Ended", "Frame", "NobodyServes", "ProtocolError", "PuckloopError", "Register",
            "RequestError", "Run", "RunEnded", "Scenario", "StartError", "Stepped", "Value", "attach", "dataframe",
-           "from_snapshot", "program", "start", "table"]
+           "decoded", "from_snapshot", "program", "start", "table"]

@@ -20,14 +20,15 @@ import asyncio
 import os
 import pathlib
 import re
+import subprocess
 import time
 from typing import Any, Mapping, Sequence, TypeVar
 
-from . import launch, session
+from . import launch, session, tables
 from .errors import NobodyServes, PuckloopError, RequestError, RunEnded, StartError
 from .launch import Found, Launched
 from .line import HAS_ENDED, Wire
-from .records import Ended, Frame, Register, Stepped, Value
+from .records import Decoded, Ended, Frame, Register, Stepped, Value
 from .scenario import Scenario
 from .session import Operation, Session, Text, Time
 
@@ -290,6 +291,13 @@ class Run:
 
     async def frames(self) -> list[Frame]:
         return await self._do(self._session.frames())
+
+    async def decoded(self, protocol: str | None = None, *, link: str | None = None, sender: str | None = None
+                      ) -> list[Decoded]:
+        words = tables.decode_words(self.results, protocol, link, sender)
+        process = await asyncio.create_subprocess_exec(*words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        output, error = await process.communicate()
+        return tables.decoded_rows(process.returncode or 0, output, error)
 
     def log(self, node: str) -> str:
         return self._session.log(node)

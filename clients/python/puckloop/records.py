@@ -36,6 +36,26 @@ class Frame:
 
 
 @dataclasses.dataclass(frozen=True)
+class Decoded:
+    """A frame of a protocol, as `puckloop trace decode` reads it."""
+
+    begin_s: float  #: first bit on the line or air, seconds of simulated time
+    end_s: float  #: the last bit is there
+    link: str
+    sender: str  #: node
+    protocol: str  #: "epuck", "xbee", "bluetooth", "rab", "ircom", "i2c", "can", "mesh", "ip", "bytes", "fault"
+    fields: dict[str, Any]  #: what is in it
+    errors: tuple[str, ...]  #: what is wrong with it, and what faults did to it
+
+    @staticmethod
+    def of(row: Mapping[str, Any]) -> Decoded:
+        own = ("begin_s", "end_s", "link", "from", "protocol", "errors")
+        return Decoded(float(row["begin_s"]), float(row["end_s"]), str(row["link"]), str(row["from"]),
+                       str(row["protocol"]), {key: value for key, value in row.items() if key not in own},
+                       tuple(row.get("errors", ())))
+
+
+@dataclasses.dataclass(frozen=True)
 class Register:
     """A register of a chip."""
 

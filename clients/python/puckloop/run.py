@@ -8,11 +8,11 @@ import re
 import time
 from typing import Any, Mapping, Sequence, TypeVar
 
-from . import launch, session
+from . import launch, session, tables
 from .errors import NobodyServes, PuckloopError, RequestError, RunEnded, StartError
 from .launch import Found, Launched
 from .line import Line
-from .records import Ended, Frame, Register, Stepped, Value
+from .records import Decoded, Ended, Frame, Register, Stepped, Value
 from .scenario import Scenario
 from .session import Operation, Session, Text, Time
 
@@ -274,6 +274,12 @@ class Run:
     def frames(self) -> list[Frame]:
         """Those captured since the last call, in the order of their time."""
         return self._do(self._session.frames())
+
+    def decoded(self, protocol: str | None = None, *, link: str | None = None, sender: str | None = None
+                ) -> list[Decoded]:
+        """Frames so far by protocol ("epuck", "rab", "xbee", ...), with fields and errors. PuckloopError: no such
+        protocol, link or node."""
+        return tables.decoded(self.results, protocol, link=link, sender=sender)
 
     def log(self, node: str) -> str:
         """What a node wrote into its log so far; empty: nothing."""

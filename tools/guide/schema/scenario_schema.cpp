@@ -157,9 +157,13 @@ constexpr SchemaKey kRegion[]{
     {"size", "lengths2", "of a rectangle"}, {"radius", "length", "of a disc"}};
 constexpr SchemaKey kExpect[]{
     {"name", "text", "for people; made from the other keys where there is none"},
-    {"log", "text", "a node, in whose log a line has `text`"}, {"text", "text", "to be found in a line of the log"},
-    {"link", "text", "a serial line that carries `bytes`"}, {"bytes", "text", "hexadecimal: 56 0D"}, {"from", "text", "the node that sends them"},
+    {"log", "text", "a node, in whose log a line has `text`"}, {"text", "text", "to be found in a line of the log, or of `trace decode` for a frame"},
+    {"link", "text", "a serial line that carries `bytes`"}, {"bytes", "text", "hexadecimal: 56 0D"}, {"from", "text", "the node that sends the bytes or frame"},
     {"robot", "text", "that is in a region"}, {"no_reset", "text", "a board that starts once"},
+    {"board", "text", "whose chip holds what `holds` says"}, {"holds", "text", "TRISD == 16, U2STA.OERR == 1, counter >= 3 (a variable), 0x850:4 != 0 (memory)"},
+    {"every", "time", "from one look at the chip to the next; default 1 ms"},
+    {"frame", "text", "a protocol of `trace decode`, of which a frame comes"}, {"has", "table", "fields that the frame has, as `trace decode --json` names them"},
+    {"at_least", "integer", "so many such frames; default 1"}, {"no_loss", "text", "a serial line that loses no character"},
     {"shape", "text", "rectangle (default) or disc"}, {"centre", "lengths2", "of the region"}, {"size", "lengths2", "of a rectangle"}, {"radius", "length", "of a disc"},
     {"after", "time", "not before"}, {"by", "time", "at the latest"}, {"seen", "flag", "false: it must not happen"}};
 constexpr SchemaKey kCan[]{{"name", "text", ""}, {"controllers", "texts", "robot0.pic.can1, ..."}};

@@ -41,6 +41,7 @@ ordered_json plain(std::string_view type) {
     if (type == "texts")
         return {{"anyOf", {{{"type", "string"}}, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
     if (type == "flag") return {{"type", "boolean"}};
+    if (type == "table") return {{"type", "object"}};
     if (type == "lengths2") return list_of(quantity(kLength), 2);
     if (type == "lengths3") return list_of(quantity(kLength), 3);
     if (type == "times2") return list_of(quantity(kTime), 2);

@@ -1,13 +1,9 @@
-#include "run/stats/profiled_node.h"
+#include "run/chips/profiled_node.h"
 
 #include "debug/profile.h"
-#include "emu/avr/chip/chip.h"
-#include "emu/avr/devices/device.h"
-#include "emu/image/avr_image.h"
-#include "emu/image/image.h"
 #include "emu/image/symbol_sizes.h"
-#include "emu/tam_avr/tam_node.h"
-#include "run/stats/board_chip.h"
+#include "run/chips/board_chip.h"
+#include "run/chips/image_names.h"
 
 #include <nlohmann/json.hpp>
 
@@ -25,19 +21,10 @@ struct Names {
     debug::Variables variables;
 };
 
-Names names_in(const std::string& firmware, bool avr, const debug::DebugChip& chip) {
-    std::map<std::string, image::Symbol> symbols;
-    image::LineTable lines;
-    if (avr) {
-        image::AvrImage image = image::load_avr_image(firmware, avr::atmega1284p().image_part());
-        symbols = std::move(image.symbols);
-        lines = std::move(image.lines);
-    } else {
-        symbols = image::load_image(firmware).symbols;
-        lines = image::source_lines(firmware);
-    }
-    return {debug::Places(symbols, std::move(lines)),
-            debug::Variables(symbols, image::symbol_sizes(firmware), chip.ram_start(), chip.ram_end(),
+Names names_of(const std::string& firmware, const debug::DebugChip& chip) {
+    ImageNames names = names_in(firmware, is_avr(chip));
+    return {debug::Places(names.symbols, std::move(names.lines)),
+            debug::Variables(names.symbols, image::symbol_sizes(firmware), chip.ram_start(), chip.ram_end(),
                              !chip.stack_grows_up())};
 }
 
@@ -46,7 +33,7 @@ class ProfiledNode final : public cosim::StatefulNode {
     ProfiledNode(std::unique_ptr<cosim::StatefulNode> board, const std::string& firmware)
         : board_(std::move(board)),
           chip_(chip_of(*board_).chip),
-          names_(names_in(firmware, dynamic_cast<tam::TamNode*>(board_.get()) != nullptr, *chip_)),
+          names_(names_of(firmware, *chip_)),
           profile_(*chip_) {
         chip_->set_instrument(&profile_, true);
     }

@@ -2,7 +2,7 @@
 // The chip in a board of a run, as debuggers and profiles see it.
 
 #include "cosim/core/clock.h"
-#include "cosim/core/node.h"
+#include "cosim/core/stateful_node.h"
 #include "debug/debug_chip.h"
 
 #include <functional>
@@ -18,6 +18,13 @@ struct BoardChip {
     /// A pulse on the reset pin where the chip is now: between two advances of the node, or before an
     /// instruction (chip::Instrument). What leaves at once goes to the outbox.
     std::function<void(std::vector<cosim::Message>&)> press_reset;
+};
+
+/// A node around a board that does not hide it.
+class BoardAround {
+  public:
+    virtual ~BoardAround() = default;
+    virtual cosim::StatefulNode& board() = 0;
 };
 
 /// `board` must outlive it.

@@ -1,4 +1,4 @@
-#include "run/stats/board_chip.h"
+#include "run/chips/board_chip.h"
 
 #include "emu/avr/chip/chip.h"
 #include "emu/dspic/chip/chip.h"
@@ -16,6 +16,7 @@ BoardChip chip_of(cosim::Node& board) {
     if (auto* pic = dynamic_cast<pic::PicNode*>(&board)) return found(*pic, pic->chip());
     if (auto* rab = dynamic_cast<rab::RabNode*>(&board)) return found(*rab, rab->chip());
     if (auto* tam = dynamic_cast<tam::TamNode*>(&board)) return found(*tam, tam->board().chip());
+    if (auto* around = dynamic_cast<BoardAround*>(&board)) return chip_of(around->board());
     return {};
 }
 
