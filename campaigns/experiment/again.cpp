@@ -20,7 +20,9 @@ Findings read_findings(const fs::path& out) {
         throw InputError(out.string(), "",
                          "the experiment was ended before it began, or is of an older version",
                          "start it again");
-    return {read_experiment(*file), fs::absolute(out).lexically_normal(), store.results()};
+    const auto changes = store.note("changes");
+    return {read_experiment(*file, changes ? changes_from_json(nlohmann::json::parse(*changes)) : Changes{}),
+            fs::absolute(out).lexically_normal(), store.results()};
 }
 
 std::string served_report(const Findings& findings, const PageOfRun& page) {

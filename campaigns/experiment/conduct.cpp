@@ -46,7 +46,7 @@ class Conduct {
   public:
     explicit Conduct(const ExperimentOptions& options)
         : options_(options),
-          experiment_(read_experiment(options.file)),
+          experiment_(read_experiment(options.file, options.changes)),
           out_(fs::absolute(options.out.empty() ? fs::path("out") / options.file.stem() : options.out)) {
         options_.file = experiment_.file = fs::absolute(options.file);
         if (!options_.against.empty()) reference_ = read_reference(options_.against);
@@ -94,16 +94,18 @@ class Conduct {
 
     void claim() {
         const auto before = store_->note("identity");
-        const std::string now = identity_of(experiment_);
+        const std::string changes = to_json(options_.changes).dump();
+        const std::string now = identity_of(experiment_) + changes;
         if (before && *before != now)
             throw InputError(
                 out_.string(), "",
                 "has results of another experiment: the experiment file, its scenario, an image or program "
-                "of it, or this build of puckloop has changed",
+                "of it, --seeds, --duration or this build of puckloop has changed",
                 "--fresh to drop them, or --out with another folder");
         store_->plan(experiment_, runs_);
         if (!before) store_->set_note("identity", now);
         store_->set_note("file", experiment_.file.string());
+        store_->set_note("changes", changes);
     }
 
     void run_what_is_left() {
@@ -129,7 +131,13 @@ class Conduct {
         };
     }
     jobs::Crew crew() const {
-        return {{"experiment", options_.file.string(), "--out", out_.string(), "--worker"}, "run"};
+        std::vector<std::string> words{"experiment", options_.file.string(), "--out", out_.string(),
+                                       "--worker"};
+        const Changes& changes = options_.changes;
+        if (changes.seeds > 0) words.insert(words.end(), {"--seeds", std::to_string(changes.seeds)});
+        if (changes.duration > 0.0)
+            words.insert(words.end(), {"--duration", fmt::format("{}", changes.duration)});
+        return {std::move(words), "run"};
     }
     jobs::SlurmOptions slurm() const { return {crew(), out_, options_.tasks, interrupt_.flag(), failed_run}; }
     int workers() const {
@@ -155,7 +163,7 @@ bool run_experiment(const ExperimentOptions& options) {
 }
 
 void work(const ExperimentOptions& options, const jobs::WorkerTask& share) {
-    const Experiment experiment = read_experiment(options.file);
+    const Experiment experiment = read_experiment(options.file, options.changes);
     const fs::path own = jobs::own_folder(work_folder(options.out));
     jobs::work(share, [&](const nlohmann::json& job) {
         const Run run = run_from_json(job);

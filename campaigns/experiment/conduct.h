@@ -1,6 +1,7 @@
 #pragma once
 // `puckloop experiment`: runs what is left of an experiment and reports it.
 
+#include "campaigns/experiment/experiment_file.h"
 #include "campaigns/jobs/job_worker.h"
 
 #include <filesystem>
@@ -11,7 +12,8 @@ struct ExperimentOptions {
     std::filesystem::path file;
     std::filesystem::path out;      ///< empty: out/<name of the file>
     std::filesystem::path against;  ///< scores from elsewhere; empty: none
-    int jobs = 0;                   ///< 0: as many as there are cores
+    Changes changes{};
+    int jobs = 0;  ///< 0: as many as there are cores
     bool slurm = false;
     int tasks = 8;       ///< of the job array
     bool fresh = false;  ///< what is in the folder is dropped

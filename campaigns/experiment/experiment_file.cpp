@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace puckloop::swarm {
@@ -129,7 +130,7 @@ void read_head(Reader& reader, const TomlValue& table, Experiment& experiment) {
 
 }  // namespace
 
-Experiment read_experiment(const std::filesystem::path& file) {
+Experiment read_experiment(const std::filesystem::path& file, const Changes& changes) {
     const TomlValue root = read_toml(file);
     Experiment experiment;
     experiment.file = file;
@@ -141,9 +142,22 @@ Experiment read_experiment(const std::filesystem::path& file) {
     experiment.programs = read_variants(top, "program", "program", head->line);
     experiment.conditions = read_variants(top, "condition", "as it is", head->line);
     top.finish();
+    if (changes.duration > 0.0) experiment.duration = changes.duration;
+    if (changes.seeds > 0) {
+        experiment.seeds.resize(static_cast<std::size_t>(changes.seeds));
+        std::iota(experiment.seeds.begin(), experiment.seeds.end(), std::uint64_t{1});
+    }
     if (experiment.programs.size() * experiment.conditions.size() * experiment.seeds.size() > kMostRuns)
         reader.fail("seeds", "the experiment has too many runs", fmt::format("at most {}", kMostRuns));
     return experiment;
+}
+
+nlohmann::json to_json(const Changes& changes) {
+    return {{"seeds", changes.seeds}, {"duration", changes.duration}};
+}
+
+Changes changes_from_json(const nlohmann::json& text) {
+    return {text.at("seeds"), text.at("duration")};
 }
 
 std::vector<Run> runs_of(const Experiment& experiment) {

@@ -34,8 +34,18 @@ struct Experiment {
     std::vector<Variant> programs, conditions;  ///< at least one of each, names distinct
 };
 
+/// What the command line sets in place of the file.
+struct Changes {
+    int seeds = 0;        ///< seeds 1 to this number; 0: the file's
+    double duration = 0;  ///< s; 0: the file's
+};
+
 /// Throws InputError with file and line.
-Experiment read_experiment(const std::filesystem::path& file);
+Experiment read_experiment(const std::filesystem::path& file, const Changes& changes = {});
+
+/// For the store and for workers.
+nlohmann::json to_json(const Changes& changes);
+Changes changes_from_json(const nlohmann::json& text);
 
 /// One run of it.
 struct Run {

@@ -5,6 +5,7 @@
 #include "scenarios/reader/faults/event_file.h"
 #include "scenarios/reader/faults/fault_tables.h"
 #include "scenarios/tables/network_tables.h"
+#include "scenarios/values/image_key.h"
 
 #include <fmt/format.h>
 
@@ -48,13 +49,14 @@ void replace_firmware(Scenario& scenario, const std::string& assignment) {
     if (problem != nullptr)
         throw InputError("", "--firmware", fmt::format("'{}' {}", assignment, problem), "BOARD=IMAGE");
     const std::string wanted = assignment.substr(0, equals);
-    const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
+    const std::string image = assignment.substr(equals + 1);
     std::string known;
     bool found = false;
     for (const auto& [board, kind, firmware] : boards_of(scenario)) {
         known += board + ", ";
         if (wanted != board && wanted != kind) continue;
-        *firmware = image;
+        const std::filesystem::path there = scenarios::firmware_named({}, image, kind);
+        *firmware = std::filesystem::absolute(there.empty() ? std::filesystem::path(image) : there);
         found = true;
     }
     if (!found)

@@ -115,6 +115,34 @@ void add_linux_warnings(const std::string& name, const ordered_json& node,
                                        name, failed, count("i2c", "transfers")));
 }
 
+/// Twenty robots with one program have one thing to warn of: "robot0.linux and 19 more: ...".
+std::vector<std::string> alike_as_one(const std::vector<std::string>& warnings) {
+    struct Kind {
+        std::string node, text;
+        std::size_t count = 0;
+    };
+    std::vector<Kind> kinds;
+    for (const std::string& warning : warnings) {
+        const std::size_t colon = warning.find(": ");
+        const std::string node = colon == std::string::npos ? "" : warning.substr(0, colon);
+        const std::string text = colon == std::string::npos ? warning : warning.substr(colon);
+        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) {
+            return !node.empty() && kind.text == text &&
+                   kind.node.substr(kind.node.rfind('.') + 1) == node.substr(node.rfind('.') + 1);
+        });
+        if (same != kinds.end())
+            ++same->count;
+        else
+            kinds.push_back({node, text, 1});
+    }
+    std::vector<std::string> shown;
+    for (const Kind& kind : kinds)
+        shown.push_back(kind.count == 1
+                            ? kind.node + kind.text
+                            : fmt::format("{} and {} more{}", kind.node, kind.count - 1, kind.text));
+    return shown;
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome& outcome) {
@@ -230,7 +258,7 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
             supply_resets_summary(outcome);
     if (const ordered_json mission = mission_of(setup, outcome); !mission.is_null())
         text += "\n" + mission_summary(mission);
-    const std::vector<std::string> warnings = warnings_of(setup, outcome);
+    const std::vector<std::string> warnings = alike_as_one(warnings_of(setup, outcome));
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);
     if (warnings.size() > kShown)

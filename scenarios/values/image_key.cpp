@@ -32,28 +32,29 @@ constexpr auto kImages = std::to_array<Image>({
 
 }  // namespace
 
+fs::path firmware_named(const fs::path& folder, const std::string& text, std::string_view board) {
+    for (const Image& image : kImages)
+        if (image.board == board && text == image.name) return shipped_image(image.file);
+    std::error_code ignored;
+    if (const fs::path file = folder / text; fs::exists(file, ignored)) return file;
+    return shipped_image(text);
+}
+
 fs::path read_firmware(Reader& reader, std::string_view board) {
     const std::string text = reader.text("firmware");
+    if (fs::path file = firmware_named(reader.folder(), text, board); !file.empty()) return file;
     std::string names;
     for (const Image& image : kImages) {
         if (image.board != board) continue;
-        if (text == image.name) {
-            fs::path file = shipped_image(image.file);
-            if (file.empty())
-                reader.fail("firmware", fmt::format("there is no {} beside this program", image.file),
-                            "the firmware folder of the sources or of the installation");
-            return file;
-        }
+        if (text == image.name)
+            reader.fail("firmware", fmt::format("there is no {} beside this program", image.file),
+                        "the firmware folder of the sources or of the installation");
         names += fmt::format("\"{}\", ", image.name);
     }
-    const fs::path file = reader.folder() / text;
-    std::error_code ignored;
-    if (fs::exists(file, ignored)) return file;
-    if (fs::path image = shipped_image(text); !image.empty()) return image;
     if (text.find_first_of("./") == std::string::npos)
         reader.fail("firmware", fmt::format("there is no shipped image '{}' for this board", text),
                     "one of " + names + "or a file such as \"my.hex\"");
-    return file;
+    return reader.folder() / text;
 }
 
 }  // namespace puckloop::scenarios

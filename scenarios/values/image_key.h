@@ -4,6 +4,7 @@
 #include "scenarios/values/reader.h"
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace puckloop::scenarios {
@@ -13,5 +14,10 @@ namespace puckloop::scenarios {
 /// and where it is not there, by its name among the shipped images, so that a scenario copied elsewhere
 /// works. Throws InputError where the key is missing and where a text without dot and slash is neither.
 std::filesystem::path read_firmware(Reader& reader, std::string_view board);
+
+/// The same of a text alone, relative to `folder` (empty: the working directory); `board` may be "tam" too.
+/// Empty: it is no shipped image, and no such file is there.
+std::filesystem::path firmware_named(const std::filesystem::path& folder, const std::string& text,
+                                     std::string_view board);
 
 }  // namespace puckloop::scenarios

@@ -64,7 +64,12 @@ class List(InFolder):
                          {file.stem for file in (SOURCE / "scenarios").glob("*.toml")})
         self.assertEqual({one["name"] for one in every["campaigns"]},
                          {file.stem for file in (SOURCE / "campaigns").glob("*.toml")})
-        self.assertTrue(all(one["about"] for kind in ("scenarios", "campaigns") for one in every[kind]))
+        self.assertEqual({one["name"] for one in every["experiments"]},
+                         {file.stem for file in (SOURCE / "scenarios/experiments").glob("*.toml")})
+        self.assertEqual({one["name"] for one in every["argos"]},
+                         {file.name for file in (SOURCE / "scenarios").glob("*.argos")})
+        self.assertTrue(all(one["about"] for kind in ("scenarios", "argos", "experiments", "campaigns")
+                            for one in every[kind]))
         self.assertIn("epuck.hex", {one["name"] for one in every["images"]})
 
     def test_a_wrong_part_is_refused(self):

@@ -42,6 +42,51 @@ class New(InFolder):
         for wheel, steps in ends[0].items():
             self.assertAlmostEqual(steps, ends[1][wheel], delta=5)  # of some 7000: their calls take other times
 
+    def test_ci_installs_what_it_then_runs(self):
+        puckloop("new", "robot", folder=self.folder)
+        project = self.folder / "robot"
+        install = project / "ci/install_puckloop.sh"
+        self.assertTrue(os.access(install, os.X_OK))
+        subprocess.run(["sh", "-n", install], check=True)
+        version = json.loads(puckloop("version", "--json").stdout)["version"]
+        self.assertIn(f"VERSION={version}-1\n", install.read_text())
+        for file in (".github/workflows/puckloop.yml", ".gitlab-ci.yml"):
+            text = (project / file).read_text()
+            self.assertIn("ci/install_puckloop.sh", text)
+            self.assertIn("puckloop run robot.toml --in-process --junit results.xml", text)
+        # Without packages it is one line, before anything is done to the system.
+        environment = {name: value for name, value in os.environ.items() if name != "PUCKLOOP_PACKAGES"}
+        refused = subprocess.run([install], env=environment, capture_output=True, text=True, check=False)
+        self.assertEqual((refused.returncode, refused.stderr.count("\n"), refused.stdout), (2, 1, ""))
+        self.assertIn("PUCKLOOP_PACKAGES", refused.stderr)
+
+    def test_a_firmware_project(self):
+        made = puckloop("new", "blinker", "--firmware", folder=self.folder)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        project = self.folder / "blinker"
+        ended = puckloop("run", project / "blinker.toml", "--in-process", "--out", self.folder / "out")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertTrue(all(one["met"] for one in report["expectations"]))
+        self.assertEqual(report["warnings"], [])
+        tested = [sys.executable, "-B", "-m", "unittest"]
+        own = subprocess.run(tested, cwd=project, capture_output=True, text=True, env={**os.environ, "PUCKLOOP": PROGRAM},
+                             check=False)
+        self.assertEqual(own.returncode, 0, own.stderr)
+        # An image that does something else fails: another project's.
+        for file in ("epuck.elf", "epuck.hex"):
+            (project / "firmware" / file.replace("epuck", "firmware")).write_bytes(
+                (SOURCE / "firmware/epuck" / file).read_bytes())
+        self.refused(puckloop("run", project / "blinker.toml", "--in-process", "--out", self.folder / "out"),
+                     "no variable 'ticks'")
+        scenario = project / "blinker.toml"
+        scenario.write_text(scenario.read_text().replace("ticks >= 15", "TMR1 >= 0"))
+        failed = puckloop("run", scenario, "--in-process", "--out", self.folder / "out")
+        self.assertEqual(failed.returncode, 1, failed.stderr)
+        own = subprocess.run(tested, cwd=project, capture_output=True, text=True, env={**os.environ, "PUCKLOOP": PROGRAM},
+                             check=False)
+        self.assertEqual(own.returncode, 1, own.stderr)
+
     def test_names_that_cannot_be(self):
         for name in ("", "../x", "a b", "x" * 65):
             self.refused(puckloop("new", name, folder=self.folder), "cannot be a project's name")

@@ -97,7 +97,7 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
         declare(root, status);
     // Now: a command would take it over.
     app.footer("puckloop help COMMAND lists its options. First steps: puckloop list, puckloop new NAME.\n"
-               "Documentation: the package puckloop-doc (/usr/share/doc/puckloop/docs), or docs/ of the sources.");
+               "Documentation: /usr/share/doc/puckloop/docs, or docs/ of the sources.");
     for (CLI::App* command : app.get_subcommands({})) {
         for (const Heading& one : headings)
             if (one.command == command->get_name()) command->group(std::string(one.heading));

@@ -112,15 +112,33 @@ void declare_asm(Command& app, int& status) {
     auto arguments = std::make_shared<AsmArguments>();
     Command* command =
         app.add_subcommand("asm", "Assemble dsPIC or AVR source; register names of the chip are known");
-    command->add_option("FILE", arguments->file, "source file, - for standard input")->required();
-    command->add_option("-o,--output", arguments->output, "output file; standard output without it");
+    command->add_option("FILE", arguments->file, "source file, - for standard input")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("-o,--output", arguments->output, "output file; standard output without it")
+        ->type_name("FILE");
     command
         ->add_option("--format", arguments->format,
                      "hex: Intel HEX; list: addresses and words beside the source")
         ->check(one_of({"hex", "list"}))
         ->capture_default_str();
     command->add_option("--mcu", arguments->mcu, "chip to assemble for; its register names are known")
+        ->type_name("CHIP")
         ->capture_default_str();
+    command->footer("Syntax of a dsPIC source (instructions as XC16 writes them):\n"
+                    "          goto  start                    ; the reset vector, at 0\n"
+                    "          .org  0x100                    ; behind the vectors\n"
+                    "  start:  mov   #0x10, w0                ; a label; // begins a comment as well\n"
+                    "          mov   w0, TRISD                ; registers by their data-sheet names\n"
+                    "          .equ  SIZE, 4*8                ; or SIZE = 4*8\n"
+                    "  table:  .word 0x1234, start            ; .pword 0x123456, .ascii \"ab\", .asciz, "
+                    ".pfill 100, 0xffffff\n"
+                    "          .include \"other.s\"            ; .text and .global pass, .end ends\n"
+                    "An AVR source is as for GNU as, with .word, .byte, .balign, lo8() and hi8().\n"
+                    "Examples:\n"
+                    "  puckloop asm blink.s -o blink.hex && puckloop exec blink.hex\n"
+                    "  puckloop asm blink.s --format list\n"
+                    "  puckloop asm blink.s --mcu atmega1284p -o blink.hex");
     command->callback([arguments, &status] {
         run_asm(*arguments);
         status = 0;

@@ -6,6 +6,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
+#include "tools/guide/scenario_name.h"
 
 #include <memory>
 
@@ -50,6 +51,7 @@ void declare_debug(Command& app, int& status) {
                     "  puckloop debug firmware.elf --sources src\n"
                     "  puckloop debug --mcu atmega1284p lamp.elf <script.txt");
     command->callback([options, &status] {
+        options->exec.image = image_named(options->exec.image);
         exec::debugger::complete_options(*options);
         status = exec::debugger::run_debugger(*options);
     });

@@ -9,6 +9,7 @@
 #include "tools/commands.h"
 #include "tools/commands/disasm_avr.h"
 #include "tools/commands/text_files.h"
+#include "tools/guide/scenario_name.h"
 
 #include <fmt/format.h>
 
@@ -117,6 +118,7 @@ void declare_disasm(Command& app, int& status) {
     command->callback([arguments, &status] {
         if (arguments->image.empty() && arguments->words.empty())
             throw InputError("", "disasm", "nothing to disassemble", "an image or --words 0x...");
+        arguments->image = image_named(arguments->image);
         write_text("-", list(*arguments));
         status = 0;
     });

@@ -9,6 +9,7 @@
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
 #include "tools/commands/exec_view.h"
+#include "tools/guide/scenario_name.h"
 
 #include <fmt/format.h>
 
@@ -203,9 +204,10 @@ void describe(Command& app, ExecArguments& a) {
                    "folder for uart1.csv, uart2.csv, i2c.csv, pins.csv, board.log (rab) and "
                    "speaker.wav (pic)");
     app.add_flag("--json", o.json, "one JSON object on one line instead of text");
-    app.add_flag("--strict", o.strict,
-                 "status 1 if there is anything to warn of: a program that hangs, registers without a model, "
-                 "I2C addresses that nobody acknowledges");
+    app.add_flag(
+        "--strict", o.strict,
+        "status 1 if there is anything to warn of: a trap, a program that hangs, registers without a "
+        "model, I2C addresses that nobody acknowledges");
     app.add_option("--seed", t.seed, "of the random streams")
         ->check(count_up_to(kMostSeeds))
         ->capture_default_str();
@@ -281,6 +283,7 @@ void declare_exec(Command& app, int& status) {
                     "  puckloop exec --mcu atmega1284p my.elf --stop-at main --json");
     command->callback([command, arguments, &status] {
         ExecArguments& a = *arguments;
+        a.options.image = image_named(a.options.image);
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             a.options.bench.board = guess_board(a.options.image);
         start_log("exec", a.log);

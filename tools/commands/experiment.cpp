@@ -6,6 +6,7 @@
 #include "campaigns/experiment/conduct.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/time_check.h"
 #include "tools/commands.h"
 #include "tools/guide/scenario_name.h"
 
@@ -24,6 +25,8 @@ struct ExperimentCommandOptions {
     int again = 0;  // number of a run; 0: none
 };
 
+constexpr int kMostExperimentSeeds = 100'000;
+constexpr double kLongestExperimentRun = 2'592'000;  // s
 constexpr int kMostExperimentJobs = 256, kMostExperimentTasks = 10'000, kLastRun = 2'000'000'000;
 
 /// Status 1 if the run is not what it was.
@@ -50,7 +53,8 @@ int conduct(const ExperimentCommandOptions& options) {
         throw InputError("", "experiment", "nothing given", "an experiment file (docs/swarm.md)");
     if (options.again > 0) {
         const auto& other = options.experiment;
-        if (other.fresh || other.slurm || other.jobs != 0 || !other.against.empty())
+        if (other.fresh || other.slurm || other.jobs != 0 || !other.against.empty() ||
+            other.changes.seeds != 0 || other.changes.duration != 0)
             throw InputError("", "--again", "goes with --out alone", "--again N, --out DIR");
         return run_again(options);
     }
@@ -74,6 +78,13 @@ void declare_experiment(Command& app, int& status) {
     command->add_option("--out", experiment.out, "folder for the results (default: out/<name of the file>)")
         ->check(not_empty())
         ->type_name("DIR");
+    command->add_option("--seeds", experiment.changes.seeds, "seeds 1 to N, in place of those of the file")
+        ->check(whole_number_between(1, kMostExperimentSeeds))
+        ->type_name("N");
+    command
+        ->add_option("--duration", experiment.changes.duration,
+                     "simulated time of each run, in place of the file's")
+        ->check(seconds_between(1e-3, kLongestExperimentRun));
     command->add_option("--jobs,-j", experiment.jobs, "runs at a time on this machine (default: its cores)")
         ->check(whole_number_between(1, kMostExperimentJobs))
         ->type_name("N");
@@ -105,6 +116,7 @@ void declare_experiment(Command& app, int& status) {
         ->group("");
     command->footer("Examples:\n"
                     "  puckloop experiment scenarios/experiments/aggregation.toml\n"
+                    "  puckloop experiment aggregation --seeds 2 --duration 5s --out out/short\n"
                     "  puckloop experiment scenarios/experiments/aggregation.toml --against robots.csv\n"
                     "  puckloop experiment out/aggregation --again 12");
     command->callback([options, &status] {

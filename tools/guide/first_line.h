@@ -6,7 +6,8 @@
 
 namespace puckloop::tools {
 
-/// The first comment ("# ...") of a TOML file that says something, without its sign; empty: it has none.
+/// The first comment ("# ...") of a TOML file that says something, without its sign, or the first sentence of
+/// one at the beginning of an XML file; empty: it has none.
 std::string first_comment(const std::filesystem::path& file);
 
 }  // namespace puckloop::tools

@@ -1,4 +1,4 @@
-// `puckloop list`: scenarios, campaigns and images, each with its first line.
+// `puckloop list`: scenarios, experiments, campaigns and images, each with its first line.
 
 #include "base/error.h"
 #include "base/sha256.h"
@@ -56,6 +56,16 @@ std::vector<Row> toml_files(const std::string& known) {
     return rows;
 }
 
+/// Experiments of laboratories, as ARGoS has them.
+std::vector<Row> argos_files() {
+    std::vector<Row> rows;
+    const fs::path one = shipped_file("scenarios/aggregation.argos");
+    if (one.empty()) return rows;
+    for (const fs::path& file : files_with(one.parent_path(), {".argos"}))
+        rows.push_back({file.filename().string(), file, first_comment(file)});
+    return rows;
+}
+
 /// The project's own images, then those of PUCKLOOP_IMAGES.
 std::vector<Row> images() {
     std::vector<Row> rows;
@@ -109,6 +119,9 @@ int list(const ListOptions& options) {
             print(title, rows);
     };
     one("scenarios", "Scenarios (puckloop run NAME)", [] { return toml_files("scenarios/hello.toml"); });
+    one("argos", "Experiments of ARGoS (puckloop run NAME --linux PROGRAM)", [] { return argos_files(); });
+    one("experiments", "Experiments (puckloop experiment NAME)",
+        [] { return toml_files("scenarios/experiments/aggregation.toml"); });
     one("campaigns", "Campaigns (puckloop faults campaign FILE)",
         [] { return toml_files("campaigns/own.toml"); });
     one("images", "Images (firmware = \"NAME\"; puckloop exec FILE)", [] { return images(); });
@@ -124,10 +137,10 @@ int list(const ListOptions& options) {
 void declare_list(Command& app, int& status) {
     auto options = std::make_shared<ListOptions>();
     Command* command =
-        app.add_subcommand("list", "scenarios, campaigns and images, each with its first line");
+        app.add_subcommand("list", "scenarios, experiments, campaigns and images, each with its first line");
     command->add_option("what", options->what, "only these")
-        ->check(one_of({"scenarios", "campaigns", "images"}))
-        ->type_name("scenarios|campaigns|images");
+        ->check(one_of({"scenarios", "argos", "experiments", "campaigns", "images"}))
+        ->type_name("scenarios|argos|experiments|campaigns|images");
     command->add_flag("--json", options->json, "print one JSON object, with the files' places");
     command->callback([options, &status] { status = list(*options); });
 }

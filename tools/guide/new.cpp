@@ -4,7 +4,7 @@
 #include "base/text_file.h"
 #include "tools/cli/command.h"
 #include "tools/guide/guide.h"
-#include "tools/guide/new_files.h"
+#include "tools/guide/project/new_files.h"
 
 #include <fmt/format.h>
 
@@ -31,13 +31,13 @@ void check_name(const std::string& name) {
                          "at most 64 letters, digits and _, such as my_robot");
 }
 
-int make(const std::string& name) {
+int make(const std::string& name, bool firmware) {
     check_name(name);
     const fs::path folder(name);
     std::error_code error;
     if (fs::exists(fs::symlink_status(folder, error)))
         throw InputError(name, "", "is there already", "a name that is free");
-    for (const NewFile& file : new_files(name)) {
+    for (const NewFile& file : firmware ? firmware_files(name) : controller_files(name)) {
         const fs::path path = folder / file.path;
         make_folder(path.parent_path());
         write_file(path, file.text);
@@ -46,7 +46,7 @@ int make(const std::string& name) {
                             fs::perm_options::add, error);
         fmt::print("{}\n", path.string());
     }
-    fmt::print("Next: puckloop run {0}/{0}.toml --in-process\n", name);
+    fmt::print("Next: puckloop run {0}/{0}.toml --in-process (and {0}/README.md)\n", name);
     return 0;
 }
 
@@ -54,12 +54,18 @@ int make(const std::string& name) {
 
 void declare_new(Command& app, int& status) {
     auto name = std::make_shared<std::string>();
-    Command* command = app.add_subcommand(
-        "new", "a folder to begin with: scenario, controller in Python and C, test, CI, editor settings");
+    Command* command = app.add_subcommand("new", "a folder to begin with: scenario, controller in Python and "
+                                                 "C or firmware, test, CI, editor settings");
     command->add_option("name", *name, "of the folder, which must not be there")
         ->required()
         ->type_name("NAME");
-    command->callback([name, &status] { status = make(*name); });
+    auto firmware = std::make_shared<bool>(false);
+    command->add_flag("--firmware", *firmware,
+                      "around a firmware of the main board in place of a controller of the Linux board");
+    command->footer("Examples:\n"
+                    "  puckloop new my_robot\n"
+                    "  puckloop new my_firmware --firmware");
+    command->callback([name, firmware, &status] { status = make(*name, *firmware); });
 }
 
 }  // namespace puckloop::tools

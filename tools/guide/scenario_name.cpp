@@ -31,6 +31,13 @@ std::filesystem::path scenario_named(const std::filesystem::path& given) {
     return shipped_in("scenarios/", given);
 }
 
+std::string image_named(const std::string& given) {
+    std::error_code error;
+    if (given.empty() || std::filesystem::exists(given, error)) return given;
+    const std::filesystem::path shipped = shipped_image(given);
+    return shipped.empty() ? given : shipped.string();
+}
+
 std::filesystem::path experiment_named(const std::filesystem::path& given) {
     return shipped_in("scenarios/experiments/", given);
 }

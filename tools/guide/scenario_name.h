@@ -1,7 +1,8 @@
 #pragma once
-// A scenario as the command line names it.
+// Scenarios, experiments and images as the command line names them.
 
 #include <filesystem>
+#include <string>
 
 namespace puckloop::tools {
 
@@ -11,5 +12,8 @@ std::filesystem::path scenario_named(const std::filesystem::path& given);
 
 /// The same of an experiment file ("aggregation_machine", "scenarios/experiments/aggregation.toml").
 std::filesystem::path experiment_named(const std::filesystem::path& given);
+
+/// The same of a firmware image ("epuck.hex", "tam.elf").
+std::string image_named(const std::string& given);
 
 }  // namespace puckloop::tools

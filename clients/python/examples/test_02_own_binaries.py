@@ -1,10 +1,8 @@
 """An image and a Linux program of one's own, unmodified: here the project's, given as files."""
 
-import pathlib
-
 import pytest
 
-IMAGE = pathlib.Path(__file__).parents[3] / "firmware" / "epuck" / "epuck.hex"  # yours: HEX, ELF or COFF
+IMAGE = "epuck.hex"  # a shipped one by its name; yours: a HEX, ELF or COFF file
 
 
 @pytest.mark.puckloop("own_binaries", duration="44 s", at="41.9 s", images=[{"robot0.pic": IMAGE}],

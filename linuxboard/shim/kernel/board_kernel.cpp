@@ -476,6 +476,22 @@ bool BoardKernel::asks_for_input_only(const Waiting& waiting) {
     return true;
 }
 
+std::optional<Time> BoardKernel::waits_for_bytes_since() const {
+    std::optional<Time> first;
+    for (const auto& [thread, waiting] : waiting_) {
+        if (waiting.request.deadline != kNever) continue;
+        const auto is_port = [&](int handle) { return handle >= 0 && is_serial_port(handle); };
+        bool bytes_only = waiting.request.op == Op::Read && is_port(waiting.request.handle);
+        if (asks_for_input_only(waiting)) {
+            bytes_only = !waiting.data.empty();
+            for (std::string_view data = waiting.data; !data.empty();)
+                bytes_only = is_port(read_object<wire::PollEntry>(data).handle) && bytes_only;
+        }
+        if (bytes_only && (!first || waiting.since < *first)) first = waiting.since;
+    }
+    return first;
+}
+
 void BoardKernel::attempt_all(Time now) {
     if (now < resumes_ && resumes_ < kNever) return;
     resumes_ = kNever;

@@ -97,6 +97,8 @@ class BoardKernel {
     bool has_finished() const { return !finished_.empty(); }
     /// Some thread waits on a device, so that a message can wake it.
     bool has_waiting() const { return !waiting_.empty(); }
+    /// Since when a thread waits for bytes at the serial port and for nothing else, without a time-out.
+    std::optional<cosim::Time> waits_for_bytes_since() const;
 
     const TtyPort& tty() const { return tty_; }
     const I2cAdapter& adapter() const { return adapter_; }

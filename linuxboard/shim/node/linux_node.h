@@ -184,6 +184,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void signalled_ended(cosim::Time now);
     bool used_a_device() const;
     bool has_no_devices() const;
+    void note_waiting(cosim::Time now);
     void note_devices();
     void warn(std::string line);
     std::string last_words() const;

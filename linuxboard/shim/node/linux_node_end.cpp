@@ -132,6 +132,16 @@ void LinuxNode::end_leaving(Time now) {
     }
 }
 
+/// A program that waits for what never comes looks like one that has nothing to do.
+void LinuxNode::note_waiting(Time now) {
+    constexpr Time kLong = 5 * cosim::kSecond;
+    const std::optional<Time> since = kernel_.waits_for_bytes_since();
+    if (!since || now - *since < kLong) return;
+    warn(fmt::format(
+        "{} has waited for bytes at its serial port since {:.6f} s, up to the run's end at {:.6f} s",
+        spec_.program, cosim::to_seconds(*since), cosim::to_seconds(now)));
+}
+
 void LinuxNode::wind_up(Time now, int signal) {
     notice_first_killed(now);
     end_leaving(now);
@@ -139,6 +149,7 @@ void LinuxNode::wind_up(Time now, int signal) {
     next_restart_ = spec_.restarts.size();
     end_signal_ = signal != 0 ? signal : spec_.end_signal;
     if (clients_.empty()) return;
+    note_waiting(now);
     note_devices();
     const bool die = std::all_of(clients_.begin(), clients_.end(), [this](const auto& client) {
         return client->process->dies_of(end_signal_);

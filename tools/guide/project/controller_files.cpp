@@ -1,6 +1,6 @@
-#include "tools/guide/new_files.h"
+// A project around a controller: a program of the Linux board.
 
-#include "tools/guide/schema/schemas.h"
+#include "tools/guide/project/new_files.h"
 
 namespace puckloop::tools {
 
@@ -211,81 +211,35 @@ if __name__ == "__main__":
     unittest.main()
 )";
 
-constexpr std::string_view kGitHub = R"(name: robot
-on: [push, pull_request]
-jobs:
-  test:
-    runs-on: ubuntu-latest
-    container: debian:12
-    steps:
-      - uses: actions/checkout@v4
-      # Either install puckloop's package here, or build it from its sources and put it into PATH.
-      - run: apt-get update && apt-get install -y --no-install-recommends python3
-      - run: puckloop check NAME.toml
-      - run: python3 -m unittest -v
-)";
+constexpr std::string_view kReadme = R"(# NAME
 
-constexpr std::string_view kGitLab = R"(test:
-  image: debian:12
-  before_script:
-    # Either install puckloop's package here, or build it from its sources and put it into PATH.
-    - apt-get update && apt-get install -y --no-install-recommends python3
-  script:
-    - puckloop check NAME.toml
-    - python3 -m unittest -v
-)";
+An e-puck that puckloop runs without the robot.
 
-constexpr std::string_view kEditor = R"({
-  "evenBetterToml.schema.associations": {
-    ".*NAME\\.toml$": "./scenario.schema.json"
-  },
-  "files.associations": { "*.toml": "toml" }
-}
-)";
+* `NAME.toml`: arena, robot, what the run has to do
+* `controller.py`, `controller.c`: the Linux board's program, as on the robot
+* `test_NAME.py`: looks at a run's results
+* `ci`: how CI gets puckloop; `.github`, `.gitlab-ci.yml`: what it does then
 
-// "type" is what an editor's extension registers for the adapter; docs/debugger.md has the way for some.
-constexpr std::string_view kLaunch = R"({
-  "version": "0.2.0",
-  "configurations": [
-    {
-      "name": "firmware on the e-puck's main board",
-      "type": "puckloop",
-      "request": "launch",
-      "program": "${workspaceFolder}/my_firmware.elf",
-      "board": "pic",
-      "sources": ["${workspaceFolder}/firmware"],
-      "stopOnEntry": true
-    }
-  ]
-}
-)";
+Begin with
 
-std::string named(std::string_view text, std::string_view name) {
-    constexpr std::string_view kPlace = "NAME";
-    std::string result;
-    for (std::size_t at = 0;;) {
-        const std::size_t found = text.find(kPlace, at);
-        result += text.substr(at, found - at);
-        if (found == std::string_view::npos) return result;
-        result += name;
-        at = found + kPlace.size();
-    }
-}
+    puckloop check NAME.toml
+    puckloop run NAME.toml --in-process --view     # with the page; Ctrl-C ends it
+    python3 -m unittest -v                         # or: make test
+
+`puckloop help run` has the options; the documents are in /usr/share/doc/puckloop/docs or in `docs` of
+puckloop's sources: scenario.md (keys), linux-programs.md, framing.md (what goes over the line), expect.md.
+)";
 
 }  // namespace
 
-std::vector<NewFile> new_files(std::string_view name) {
+std::vector<NewFile> controller_files(std::string_view name) {
     const std::string file(name);
-    return {{file + ".toml", named(kScenario, name)},
-            {"controller.py", std::string(kPython), true},
-            {"controller.c", std::string(kC)},
-            {"Makefile", named(kMakefile, name)},
-            {"test_" + file + ".py", named(kTest, name)},
-            {".github/workflows/puckloop.yml", named(kGitHub, name)},
-            {".gitlab-ci.yml", named(kGitLab, name)},
-            {".vscode/settings.json", named(kEditor, name)},
-            {".vscode/launch.json", std::string(kLaunch)},
-            {"scenario.schema.json", scenario_schema().dump(2) + "\n"}};
+    std::vector<NewFile> files{
+        {file + ".toml", named(kScenario, name)},      {"README.md", named(kReadme, name)},
+        {"controller.py", std::string(kPython), true}, {"controller.c", std::string(kC)},
+        {"Makefile", named(kMakefile, name)},          {"test_" + file + ".py", named(kTest, name)}};
+    add_shared_files(files, name, "${workspaceFolder}/my_firmware.elf");
+    return files;
 }
 
 }  // namespace puckloop::tools
