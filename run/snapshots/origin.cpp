@@ -137,8 +137,11 @@ json request_json(const RunRequest& request) {
     json firmware = json::array();
     for (const std::string& assignment : request.firmware) {
         const auto equals = std::min(assignment.find('='), assignment.size() - 1);
-        firmware.push_back(assignment.substr(0, equals + 1) +
-                           fs::absolute(assignment.substr(equals + 1)).string());
+        const std::string image = assignment.substr(equals + 1);
+        std::error_code ignored;
+        // The name of a shipped image stays one.
+        const bool file = image.find('/') != std::string::npos || fs::exists(image, ignored);
+        firmware.push_back(assignment.substr(0, equals + 1) + (file ? fs::absolute(image).string() : image));
     }
     const auto path = [](const fs::path& file) { return file.empty() ? "" : fs::absolute(file).string(); };
     json text{{"scenario", path(request.scenario)}, {"firmware", firmware},

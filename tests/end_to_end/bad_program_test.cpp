@@ -184,3 +184,39 @@ TEST_CASE("a program that computes for ever is found in both placements") {
         check_kept(bench, 1.0);
     }
 }
+
+TEST_CASE("a program that waits for what never comes is named, once for robots that are alike") {
+    const Workbench bench;
+    const std::string waits = bench.file("waits.sh", "#!/bin/sh\nexec 3<>/dev/ttyS0\nread x <&3\n");
+    chmod(waits.c_str(), 0755);
+    const auto scenario = bench.file("two.toml", R"([run]
+allow = ["program"]
+[arena]
+size = ["2 m", "2 m"]
+[[robot]]
+name = "a"
+position = ["-50 cm", "0 m"]
+[robot.pic]
+firmware = "own"
+[robot.linux]
+program = ["./waits.sh"]
+[[robot]]
+name = "b"
+position = ["50 cm", "0 m"]
+[robot.pic]
+firmware = "own"
+[robot.linux]
+program = ["./waits.sh"]
+)");
+    const Ended good = bench.run("o", {scenario, "--in-process", "--duration", "7"});
+    INFO(good.out << good.err);
+    const auto warnings = bench.report("o")["warnings"];
+    REQUIRE(warnings.size() == 2);
+    CHECK_THAT(warnings[0].get<std::string>(),
+               Contains("a.linux: ") && Contains("has waited for bytes at its serial port since "));
+    // One line on the terminal.
+    CHECK_THAT(good.out, Contains("warning: a.linux and 1 more: ") && !Contains("warning: b.linux"));
+    // A second is no time.
+    REQUIRE(bench.run("o", {scenario, "--in-process", "--duration", "2"}).status == good.status);
+    CHECK(bench.report("o")["warnings"].empty());
+}

@@ -2,6 +2,7 @@
 // score of a run in every placement, and a run of the ARGoS file with a mission from elsewhere.
 
 #include "campaigns/experiment/experiment_store.h"
+#include "tests/end_to_end/one_line.h"
 #include "tests/end_to_end/process.h"
 #include "tests/experiment/small_experiment.h"
 
@@ -82,6 +83,25 @@ TEST_CASE(
     CHECK_THAT(beside.err, Contains("0 run now"));
     CHECK_THAT(beside.out, Contains("drop 1.5 [") && Contains("mean error -1.5 ["));
     CHECK_THAT(text_of(bench.out("one") / "report.html"), Contains("Against other.csv"));
+}
+
+TEST_CASE("seeds and duration of the command line are those of workers, of the folder and of --again") {
+    const Workbench bench;
+    const auto file = small_experiment(bench);
+    const Ended whole = bench.puckloop(
+        experiment_words(bench, file, "e", {"--jobs", "2", "--seeds", "1", "--duration", "1 s"}));
+    INFO(whole.out << whole.err);
+    REQUIRE(whole.status == 0);
+    CHECK_THAT(whole.err, Contains("2 runs: 2 programs, 1 condition, 1 seed"));
+    CHECK(bench.csv("e", "results.csv").size() == 2);
+    const Ended again = bench.puckloop({"experiment", bench.out("e").string(), "--again", "2"});
+    INFO(again.err);
+    CHECK(again.status == 0);
+    CHECK(bench.report("e/replay/2")["simulated_s"].get<double>() < 1.5);
+    // Without them it is another experiment, whose results are not mixed with these.
+    check_one_line(bench.puckloop(experiment_words(bench, file, "e", {})), 2, {"--seeds", "--fresh"});
+    check_one_line(bench.puckloop({"experiment", bench.out("e").string(), "--again", "2", "--seeds", "3"}), 2,
+                   {"--again"});
 }
 
 TEST_CASE("a run's score is the same in every placement, in the report and on the terminal") {

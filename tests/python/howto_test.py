@@ -81,6 +81,10 @@ class Pages(InFolder):
         self.check_page("ci.md", 2)
         self.assertIn("it stays awake", (self.folder / "results.xml").read_text())
 
+    def test_own_firmware(self):
+        self.check_page("own_firmware.md", 5)
+        self.assertIn("its clock runs", (self.folder / "blinker/results.xml").read_text())
+
     def test_lost_frames(self):
         self.check_page("lost_frames.md", 5)
 
