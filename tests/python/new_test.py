@@ -73,16 +73,16 @@ class New(InFolder):
         own = subprocess.run(tested, cwd=project, capture_output=True, text=True, env={**os.environ, "PUCKLOOP": PROGRAM},
                              check=False)
         self.assertEqual(own.returncode, 0, own.stderr)
-        # An image that does something else fails: another project's.
-        for file in ("epuck.elf", "epuck.hex"):
-            (project / "firmware" / file.replace("epuck", "firmware")).write_bytes(
-                (SOURCE / "firmware/epuck" / file).read_bytes())
-        self.refused(puckloop("run", project / "blinker.toml", "--in-process", "--out", self.folder / "out"),
-                     "no variable 'ticks'")
+        # A HEX has no variables: that is said, in the place that asks for one.
         scenario = project / "blinker.toml"
-        scenario.write_text(scenario.read_text().replace("ticks >= 15", "TMR1 >= 0"))
+        text = scenario.read_text()
+        scenario.write_text(text.replace("firmware.elf\"", "firmware.hex\""))
+        self.refused(puckloop("run", scenario, "--in-process", "--out", self.folder / "out"), "line ", "no symbols")
+        # Another firmware fails, in the run and in the tests.
+        scenario.write_text(text)
+        (project / "firmware/firmware.elf").write_bytes((SOURCE / "firmware/epuck/epuck.elf").read_bytes())
         failed = puckloop("run", scenario, "--in-process", "--out", self.folder / "out")
-        self.assertEqual(failed.returncode, 1, failed.stderr)
+        self.assertEqual((failed.returncode, failed.stderr.count("\n")), (1, 1), failed.stderr)
         own = subprocess.run(tested, cwd=project, capture_output=True, text=True, env={**os.environ, "PUCKLOOP": PROGRAM},
                              check=False)
         self.assertEqual(own.returncode, 1, own.stderr)
