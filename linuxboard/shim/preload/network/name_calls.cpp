@@ -31,11 +31,20 @@ bool is_numeric(const char* text, std::uint32_t& address) {
     return true;
 }
 
+namespace {
+/// Without regard to case, and to the dot of a name that is complete.
+bool same_name(const char* name, const char* known) {
+    const std::size_t length = std::strlen(known);
+    if (strncasecmp(name, known, length) != 0 || length == 0) return false;
+    return name[length] == '\0' || std::strcmp(name + length, ".") == 0;
+}
+}  // namespace
+
 std::uint32_t address_of_name(const char* name) {
-    if (strcasecmp(name, "localhost") == 0) return INADDR_LOOPBACK;
+    if (same_name(name, "localhost")) return INADDR_LOOPBACK;
     for (std::uint32_t i = 0; i < page().host_count; ++i)
-        if (strcasecmp(name, page().hosts[i].name) == 0) return page().hosts[i].address;
-    if (strcasecmp(name, page().host_name) == 0) return page().network_address;
+        if (same_name(name, page().hosts[i].name)) return page().hosts[i].address;
+    if (same_name(name, page().host_name)) return page().network_address;
     return 0;
 }
 
@@ -50,7 +59,7 @@ int open_network_file(const char* path) {
     if (!is_linked() || page().networked == 0 || !is_text(path)) return -1;
     const bool hosts = std::strcmp(path, "/etc/hosts") == 0;
     if (!hosts && std::strcmp(path, "/etc/resolv.conf") != 0) return -1;
-    std::string text;
+    std::string text = "nameserver 127.0.0.53\n";
     if (hosts) {
         text = "127.0.0.1\tlocalhost\n";
         for (std::uint32_t i = 0; i < page().host_count; ++i) {
@@ -246,7 +255,7 @@ int find_host(const char* name, int family, hostent* entry, char* buffer, std::s
     std::uint32_t address = 0;
     const int failed = family == AF_INET ? find_node(name, 0, address) : EAI_NONAME;
     if (failed != 0) {
-        *error = failed == EAI_AGAIN ? TRY_AGAIN : HOST_NOT_FOUND;
+        *error = h_errno = failed == EAI_AGAIN ? TRY_AGAIN : HOST_NOT_FOUND;
         return 0;
     }
     const int full = fill(name, address, entry, buffer, size);
@@ -276,7 +285,7 @@ int find_by_address(const void* address, socklen_t length, int family, hostent* 
     const bool known = family == AF_INET && length == sizeof number && get_from_program(number, address);
     const char* name = known ? name_of_address(ntohl(number.s_addr)) : nullptr;
     if (name == nullptr) {
-        *error = HOST_NOT_FOUND;
+        *error = h_errno = HOST_NOT_FOUND;
         return 0;
     }
     const int full = fill(name, ntohl(number.s_addr), entry, buffer, size);
