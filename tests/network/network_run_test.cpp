@@ -289,7 +289,7 @@ TEST_CASE("curl, requests, iperf3, nc and ping between four robots, with range a
         "sleep 2; curl -s -o /dev/null -w '%{http_code} %{size_download}\\n' http://robot0:8000/more.toml; "
         "echo by nc | nc -N robot0 7000",
         "sleep 2; python3 -B -c 'import requests; "
-        "print(requests.get(\\\"http://robot0:8000/\\\").status_code)'",
+        "print(requests.get(\\\"http://robot0:8000/more.toml\\\").status_code)'",
         "sleep 2; ping -c 3 -i 0.2 robot1 | grep received; iperf3 -c robot0 -u -b 200K -t 1 -J | grep -c "
         "jitter"};
     std::string text =
@@ -299,7 +299,7 @@ TEST_CASE("curl, requests, iperf3, nc and ping between four robots, with range a
         text += fmt::format("[[robot]]\nposition = [\"{} cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n"
                             "[robot.linux]\nprogram = [\"sh\", \"-c\", \"cd {}; {}; sleep 60\"]\n",
                             40 * i, bench.folder().string(), programs[i]);
-    text += "[[fault]]\nnode = \"network\"\nkind = \"loss\"\nprobability = 0.01\n";
+    text += "[[fault]]\nnode = \"network\"\nkind = \"loss\"\nprobability = 0.05\n";
     bench.file("more.toml", text);
     check_everywhere(bench, bench.folder() / "more.toml");
     CHECK(log_of(bench, "o0", "robot1").find(fmt::format("200 {}\n", text.size())) != std::string::npos);

@@ -159,6 +159,11 @@ print("own", same.recv(99))
 same.close()
 print("closed", client.recv(9))
 
+# Addresses by number
+for node, family, flags in ((None, socket.AF_INET6, socket.AI_PASSIVE), (None, socket.AF_INET6, 0), ("::1", 0, 0),
+                            (None, socket.AF_INET, socket.AI_PASSIVE), ("127.0.0.9", 0, 0)):
+    print("address", socket.getaddrinfo(node, 80, family, socket.SOCK_STREAM, 0, flags)[0][4][:2])
+
 # Options that servers set
 one = socket.socket()
 for level, name, value in ((socket.IPPROTO_TCP, socket.TCP_MAXSEG, 1000), (socket.IPPROTO_TCP, socket.TCP_SYNCNT, 3),

@@ -138,22 +138,38 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {{SOCK_STREAM, IPPROTO_TCP}, {SOCK_DGRAM, IPPROTO_UDP}, {SOCK_RAW, IPPROTO_IP}};
 
+sockaddr_in place_of(std::uint32_t address, std::uint16_t port) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(port);
+    place.sin_addr.s_addr = htonl(address);
+    return place;
+}
+
+/// IPv6 by number: known, as of any C library, though no socket can have it.
+bool find_six(const char* node, const addrinfo& wish, std::uint16_t port, sockaddr_in6& place) {
+    if (wish.ai_family == AF_INET || (wish.ai_family == AF_UNSPEC && node == nullptr)) return false;
+    place = {};
+    place.sin6_family = AF_INET6;
+    place.sin6_port = htons(port);
+    if (node != nullptr) return inet_pton(AF_INET6, node, &place.sin6_addr) == 1;
+    place.sin6_addr = (wish.ai_flags & AI_PASSIVE) != 0 ? in6addr_any : in6addr_loopback;
+    return true;
+}
+
 /// As the C library makes it, so that its freeaddrinfo() frees it.
-addrinfo* new_entry(const Kind& kind, std::uint32_t address, std::uint16_t port) {
-    auto* memory = static_cast<char*>(std::malloc(sizeof(addrinfo) + sizeof(sockaddr_in)));
+template <typename Place>
+addrinfo* new_entry(const Kind& kind, int family, const Place& place) {
+    auto* memory = static_cast<char*>(std::malloc(sizeof(addrinfo) + sizeof place));
     if (memory == nullptr) return nullptr;
     auto* entry = reinterpret_cast<addrinfo*>(memory);
-    auto* place = reinterpret_cast<sockaddr_in*>(memory + sizeof(addrinfo));
-    *place = {};
-    place->sin_family = AF_INET;
-    place->sin_port = htons(port);
-    place->sin_addr.s_addr = htonl(address);
+    std::memcpy(memory + sizeof(addrinfo), &place, sizeof place);
     *entry = {};
-    entry->ai_family = AF_INET;
+    entry->ai_family = family;
     entry->ai_socktype = kind.type;
     entry->ai_protocol = kind.protocol;
-    entry->ai_addrlen = sizeof(sockaddr_in);
-    entry->ai_addr = reinterpret_cast<sockaddr*>(place);
+    entry->ai_addrlen = sizeof place;
+    entry->ai_addr = reinterpret_cast<sockaddr*>(memory + sizeof(addrinfo));
     return entry;
 }
 
@@ -173,15 +189,20 @@ SHIM_EXPORT int getaddrinfo(const char* node, const char* service, const addrinf
     Service port;
     if (const int error = find_service(service, wish.ai_flags, wish.ai_socktype, port)) return error;
     std::uint32_t address = 0;
-    if (const int error = find_node(node, wish.ai_flags, address)) return error;
-    if (wish.ai_family == AF_INET6) return EAI_ADDRFAMILY;
+    sockaddr_in6 six{};
+    const bool is_six = find_six(node, wish, port.port, six);
+    if (!is_six) {
+        if (const int error = find_node(node, wish.ai_flags, address)) return error;
+        if (wish.ai_family == AF_INET6) return EAI_ADDRFAMILY;
+    }
     addrinfo* first = nullptr;
     addrinfo** next = &first;
     for (const Kind& kind : kKinds) {
         if (wish.ai_socktype != 0 && wish.ai_socktype != kind.type) continue;
         const bool given = wish.ai_protocol != 0 && kind.type != SOCK_RAW;
         if (given && wish.ai_protocol != kind.protocol) continue;
-        *next = new_entry(kind, address, port.port);
+        *next =
+            is_six ? new_entry(kind, AF_INET6, six) : new_entry(kind, AF_INET, place_of(address, port.port));
         if (*next == nullptr) {
             freeaddrinfo(first);
             return EAI_MEMORY;
