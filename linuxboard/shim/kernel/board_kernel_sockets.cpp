@@ -208,7 +208,10 @@ bool BoardKernel::attempt_receive(std::uint32_t thread, Waiting& waiting, Time n
     const bool peek = (request.b & wire::kReceivePeek) != 0;
     const bool all = (request.b & wire::kReceiveAll) != 0 && network_->is_stream(socket) && !peek;
     NetworkStack::Received received;
-    const int error = network_->receive(socket, request.a - waiting.gathered.size(), peek, received, now);
+    int error = network_->receive(socket, request.a - waiting.gathered.size(), peek, received, now);
+    // Of datagrams the end (shutdown) is for those alone that wait for one.
+    const bool none = error == 0 && received.from == Endpoint{} && !network_->is_stream(socket);
+    if (none && request.nonblocking != 0) error = EAGAIN;
     waiting.gathered += received.data;
     const bool some = !waiting.gathered.empty();
     const bool waits = request.nonblocking == 0 && !late;

@@ -1,5 +1,5 @@
 # Calls of sockets that servers and tools make, on the board itself: the same lines of any Linux.
-import array, errno, fcntl, os, select, socket, struct, sys, time
+import ctypes, errno, os, select, signal, socket, struct, sys, time
 
 ANY = ("127.0.0.1", 0)
 
@@ -163,6 +163,25 @@ print("closed", client.recv(9))
 for node, family, flags in ((None, socket.AF_INET6, socket.AI_PASSIVE), (None, socket.AF_INET6, 0), ("::1", 0, 0),
                             (None, socket.AF_INET, socket.AI_PASSIVE), ("127.0.0.9", 0, 0)):
     print("address", socket.getaddrinfo(node, 80, family, socket.SOCK_STREAM, 0, flags)[0][4][:2])
+
+# An alarm ends a wait
+signal.signal(signal.SIGALRM, lambda number, frame: None)
+waiter = ctypes.CDLL(None, use_errno=True)
+for what in ("epoll_wait", "poll"):
+    signal.setitimer(signal.ITIMER_REAL, 0.03)
+    room = ctypes.create_string_buffer(64)
+    if what == "poll":
+        struct.pack_into("ihh", room, 0, client.fileno(), select.POLLPRI, 0)
+    found = waiter.poll(room, 1, 500) if what == "poll" else waiter.epoll_wait(outer.fileno(), room, 1, 500)
+    print(what, found, errno.errorcode.get(ctypes.get_errno()))
+
+# Nothing comes any more, for those that wait
+into, out = datagrams()
+into.setblocking(False)
+attempt("unconnected", lambda: into.shutdown(socket.SHUT_RD))
+attempt("shut datagrams", lambda: into.recv(9))
+into.setblocking(True)
+attempt("waiting", lambda: into.recv(9))
 
 # Options that servers set
 one = socket.socket()
