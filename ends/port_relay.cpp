@@ -1,14 +1,13 @@
 #include "ends/port_relay.h"
 
 #include "base/error.h"
+#include "base/relay/octet_relay.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
-#include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <list>
 #include <memory>
@@ -23,53 +22,15 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 using Local = boost::asio::local::stream_protocol;
 
-constexpr std::size_t kRelayBlock = 16 * 1024;  // octets that wait in one direction at most
+using Relayed = OctetRelay<tcp::socket, Local::socket>;
 
-class Relayed : public std::enable_shared_from_this<Relayed> {
-  public:
-    Relayed(tcp::socket outer, boost::asio::io_context& io) : outer_(std::move(outer)), inner_(io) {}
-
-    void begin(const std::string& path) {
-        auto self = shared_from_this();
-        inner_.async_connect(Local::endpoint(path), [self](const error_code& error) {
-            if (error) return self->close();  // the run is not yet there, or over
-            self->pass(self->outer_, self->inner_, self->in_);
-            self->pass(self->inner_, self->outer_, self->out_);
-        });
-    }
-
-  private:
-    using Block = std::array<char, kRelayBlock>;
-
-    template <class From, class To>
-    void pass(From& from, To& to, Block& block) {
-        auto self = shared_from_this();
-        from.async_read_some(boost::asio::buffer(block), [self, &from, &to, &block](const error_code& error,
-                                                                                    std::size_t size) {
-            if (error) return self->ended(to, error);
-            boost::asio::async_write(to, boost::asio::buffer(block, size),
-                                     [self, &from, &to, &block](const error_code& failed, std::size_t) {
-                                         if (failed) return self->close();
-                                         self->pass(from, to, block);
-                                     });
-        });
-    }
-    template <class To>
-    void ended(To& to, const error_code& error) {
-        if (error != boost::asio::error::eof) return close();
-        error_code ignored;
-        to.shutdown(To::shutdown_send, ignored);
-    }
-    void close() {
-        error_code ignored;
-        outer_.close(ignored);
-        inner_.close(ignored);
-    }
-
-    tcp::socket outer_;
-    Local::socket inner_;
-    Block in_{}, out_{};
-};
+/// To the socket at `path`; a caller whom nobody answers there (the run is not yet there, or over) is left.
+void relay(tcp::socket caller, const std::string& path, boost::asio::io_context& io) {
+    auto relayed = std::make_shared<Relayed>(std::move(caller), Local::socket(io));
+    relayed->second().async_connect(Local::endpoint(path), [relayed](const error_code& error) {
+        if (!error) relayed->begin();
+    });
+}
 
 }  // namespace
 
@@ -99,7 +60,7 @@ struct PortRelay::Parts {
             if (!error) {
                 error_code ignored;
                 caller.set_option(tcp::no_delay(true), ignored);
-                std::make_shared<Relayed>(std::move(caller), io)->begin(door.socket);
+                relay(std::move(caller), door.socket, io);
             }
             accept(door);
         });

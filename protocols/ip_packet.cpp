@@ -12,7 +12,6 @@ namespace {
 constexpr std::uint16_t kMoreFragments = 0x2000, kDontFragment = 0x4000, kOffsetMask = 0x1fff;
 constexpr std::size_t kOffsetUnit = 8;
 constexpr Octet kVersionAndLength = 0x45;
-constexpr std::size_t kIcmpHeader = 8;
 constexpr Octet kEndOfOptions = 0, kNoOption = 1, kSegmentSize = 2;
 constexpr std::size_t kSegmentSizeLength = 4;
 
@@ -97,7 +96,7 @@ std::vector<Octet> encode(const IpPacket& packet) {
     std::vector<Octet> out;
     out.reserve(kIpHeader + packet.payload.size());
     put(out, kVersionAndLength, 1);
-    put(out, 0, 1);
+    put(out, packet.service, 1);
     put(out, static_cast<std::uint32_t>(kIpHeader + packet.payload.size()), 2);
     put(out, packet.id, 2);
     const bool may_split = packet.protocol == kUdp;
@@ -122,6 +121,7 @@ std::optional<IpPacket> decode_ip(std::span<const Octet> octets) {
     if (folded(sum_of(octets.first(header))) != 0) return std::nullopt;
     const std::uint16_t fragment = get16(octets, 6);
     IpPacket packet;
+    packet.service = octets[1];
     packet.id = get16(octets, 4);
     packet.more = (fragment & kMoreFragments) != 0;
     packet.offset = static_cast<std::uint16_t>((fragment & kOffsetMask) * kOffsetUnit);

@@ -33,6 +33,7 @@ struct IpPacket {
     IpAddress from = 0, to = 0;
     Octet protocol = 0;
     Octet ttl = 64;
+    Octet service = 0;  ///< type of service
     std::uint16_t id = 0;
     bool more = false;         ///< fragments follow
     std::uint16_t offset = 0;  ///< of this fragment, octets, a multiple of 8
@@ -72,6 +73,8 @@ std::vector<Octet> encode_tcp(const TcpSegment& segment, IpAddress from, IpAddre
 std::optional<TcpSegment> decode_tcp(const IpPacket& packet);
 
 inline constexpr Octet kUnreachable = 3, kPortUnreachable = 3;
+inline constexpr Octet kEchoReply = 0, kEcho = 8;  ///< `rest`: identifier and sequence number
+inline constexpr std::size_t kIcmpHeader = 8;
 struct IcmpMessage {
     Octet type = 0, code = 0;
     std::uint32_t rest = 0;

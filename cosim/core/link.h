@@ -28,6 +28,9 @@ struct LinkSpec {
     /// Whether messages sent by a, by b are written to trace files. All are part of the trace's hash.
     bool record_from_a = true;
     bool record_from_b = true;
+    /// Whether the trace's hash names the link where nothing goes over it. Without, such a run is as one that
+    /// does not have the link, which comes after all others.
+    bool hashed_when_unused = true;
 };
 
 /// Which end sends.

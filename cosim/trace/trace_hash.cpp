@@ -15,10 +15,6 @@ namespace {
 constexpr std::string_view kHead = "puckloop trace 1\n";
 constexpr std::size_t kChunk = 16384;
 
-bool is_of_hands(const LinkSpec& link) {
-    return link.a.port == kHandsPort && link.b.port == kHandsPort;
-}
-
 template <class Archive>
 void list(Archive& archive, sha256_ctx& context) {
     for (std::uint32_t& word : context.state)
@@ -36,7 +32,7 @@ TraceHash::TraceHash() {
 
 void TraceHash::begin(const std::vector<LinkSpec>& links) {
     ByteWriter writer(buffer_);
-    const auto last = std::find_if(links.begin(), links.end(), is_of_hands);
+    const auto last = std::ranges::find(links, false, &LinkSpec::hashed_when_unused);
     writer.text(kHead);
     writer.u32(static_cast<std::uint32_t>(last - links.begin()));
     for (const LinkSpec& link : std::span(links.begin(), last))

@@ -7,16 +7,11 @@
 #include <nettle/sha2.h>
 
 #include <string>
-#include <string_view>
 
 namespace puckloop::cosim {
 
-/// Of either end of a link that is not in the head of the hash: a run in which nothing goes over it is as one
-/// without it. Such links come behind all others.
-inline constexpr std::string_view kHandsPort = "messages";
-
-/// The form: a head naming links, ends and ports, then for each message delivery time, link, direction, fault
-/// and payload as cosim/core/codec.h writes them.
+/// The form: a head naming links, ends and ports (of those with LinkSpec::hashed_when_unused), then for each
+/// message delivery time, link, direction, fault and payload as cosim/core/codec.h writes them.
 class TraceHash : public TraceSink {
   public:
     TraceHash();

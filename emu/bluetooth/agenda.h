@@ -1,11 +1,9 @@
 #pragma once
 // What is to happen in the Bluetooth node, in order of time and then of asking.
 
-#include "cosim/core/time.h"
+#include "emu/air/agenda.h"
 
 #include <cstdint>
-#include <map>
-#include <utility>
 #include <vector>
 
 namespace puckloop::bluetooth {
@@ -39,15 +37,6 @@ struct Event {
     std::vector<std::uint8_t> bytes{};
 };
 
-class Agenda {
-  public:
-    void add(cosim::Time at, Event event) { events_.emplace(std::pair(at, next_++), std::move(event)); }
-    cosim::Time next() const { return events_.empty() ? cosim::kNever : events_.begin()->first.first; }
-    Event take() { return std::move(events_.extract(events_.begin()).mapped()); }
-
-  private:
-    std::map<std::pair<cosim::Time, std::uint64_t>, Event> events_;
-    std::uint64_t next_ = 0;
-};
+using Agenda = air::Agenda<Event>;
 
 }  // namespace puckloop::bluetooth

@@ -1,9 +1,9 @@
 #include "emu/bluetooth/network.h"
 
+#include "emu/air/power.h"
 #include "protocols/lmx9820_packet.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace puckloop::bluetooth {
@@ -34,7 +34,7 @@ std::string Network::name_of(const Address& address) const {
 
 bool Network::near(std::size_t a, std::size_t b) const {
     const auto &p = members_[a].at, &q = members_[b].at;
-    return !p || !q || std::hypot((*p)[0] - (*q)[0], (*p)[1] - (*q)[1]) <= range_;
+    return !p || !q || air::distance(*p, *q) <= range_;
 }
 
 std::optional<std::size_t> Network::reach(std::size_t station, const Address& address) const {

@@ -1,11 +1,9 @@
 #pragma once
 // What is to happen in the medium's node, in order of time and then of asking.
 
-#include "cosim/core/time.h"
+#include "emu/air/agenda.h"
 
 #include <cstdint>
-#include <map>
-#include <utility>
 
 namespace puckloop::radio {
 
@@ -31,21 +29,9 @@ struct Event {
     std::uint64_t token = 0;  ///< which transmission, job, packet
 };
 
-class Agenda {
+class Agenda : public air::Agenda<Event> {
   public:
-    void add(const Event& event) { events_.emplace(std::pair(event.at, next_++), event); }
-    bool empty() const { return events_.empty(); }
-    cosim::Time next() const { return events_.empty() ? cosim::kNever : events_.begin()->first.first; }
-    Event take() {
-        const Event event = events_.begin()->second;
-        events_.erase(events_.begin());
-        return event;
-    }
-    const std::map<std::pair<cosim::Time, std::uint64_t>, Event>& events() const { return events_; }
-
-  private:
-    std::map<std::pair<cosim::Time, std::uint64_t>, Event> events_;
-    std::uint64_t next_ = 0;
+    void add(const Event& event) { air::Agenda<Event>::add(event.at, event); }
 };
 
 }  // namespace puckloop::radio

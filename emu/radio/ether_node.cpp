@@ -142,9 +142,9 @@ std::string EtherNode::finish() {
                                       {"channel_busy", mac.channel_busy},
                                       {"received", mac.received},
                                       {"received_twice", mac.duplicates},
-                                      {"collisions", mac.collisions},
-                                      {"noise", mac.noise},
-                                      {"while_sending", mac.while_sending},
+                                      {"collisions", mac.losses.collisions},
+                                      {"noise", mac.losses.noise},
+                                      {"while_sending", mac.losses.sending},
                                       {"dropped", mac.dropped}}}};
     }
     json report{{"stations", std::move(stations)}, {"hops", mesh_.hops()}, {"warnings", warnings_}};

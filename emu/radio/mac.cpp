@@ -155,23 +155,14 @@ bool Mac::reads(std::size_t station, const Transmission& transmission, std::opti
     Station& it = stations_[station];
     if (!faults_.empty()) faults_.advance(medium_, transmission.end);
     const Transmission* foreign = nullptr;
-    switch (medium_.obstacle(transmission, station, &foreign)) {
-    case Obstacle::Weak:
-        return false;
-    case Obstacle::Busy:
-        ++it.counts.while_sending;
-        return false;
-    case Obstacle::Collision:
-        if (foreign != nullptr) faults_.spoilt(*foreign, transmission, station);
-        ++it.counts.collisions;
-        return false;
-    case Obstacle::None:
-        break;
-    }
+    const Fate fate = medium_.fate(transmission, station, &foreign);
+    it.counts.losses.count(fate);
+    if (fate == Fate::Collision && foreign != nullptr) faults_.spoilt(*foreign, transmission, station);
+    if (fate != Fate::Read) return false;
     const double loss = medium_.propagation().frame_loss(medium_.received_dbm(transmission, station));
     const bool clear = it.noise.uniform() >= loss;
     if (clear && (faults_.empty() || faults_.read(transmission, frame, station))) return true;
-    ++it.counts.noise;
+    it.counts.losses.count(Fate::Noise);
     return false;
 }
 

@@ -40,14 +40,12 @@ struct MacCounts {
     std::uint64_t frames = 0;  ///< sent, retries included
     std::uint64_t acks = 0;    ///< sent
     std::uint64_t retries = 0;
-    std::uint64_t failures = 0;       ///< unicasts without an acknowledgement after all retries
-    std::uint64_t channel_busy = 0;   ///< attempts that found no free channel
-    std::uint64_t received = 0;       ///< for this station or everybody
-    std::uint64_t duplicates = 0;     ///< of these, received before
-    std::uint64_t collisions = 0;     ///< not read because of another frame
-    std::uint64_t noise = 0;          ///< not read because of noise or other users of the band
-    std::uint64_t while_sending = 0;  ///< not read because the station was sending
-    std::uint64_t dropped = 0;        ///< forgotten when the module was reset or switched off
+    std::uint64_t failures = 0;      ///< unicasts without an acknowledgement after all retries
+    std::uint64_t channel_busy = 0;  ///< attempts that found no free channel
+    std::uint64_t received = 0;      ///< for this station or everybody
+    std::uint64_t duplicates = 0;    ///< of these, received before
+    air::Losses losses;              ///< of noise: other users of the band among them
+    std::uint64_t dropped = 0;       ///< forgotten when the module was reset or switched off
 };
 
 /// What a received frame came with.

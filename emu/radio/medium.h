@@ -12,6 +12,8 @@
 
 #include "base/fields/field.h"
 #include "cosim/core/time.h"
+#include "emu/air/fate.h"
+#include "emu/air/on_air.h"
 
 #include <array>
 #include <cstdint>
@@ -47,7 +49,6 @@ inline constexpr double kSensitivityDbm = -92.0;
 inline constexpr double kFullPowerDbm = 1.42;  ///< PL = 4
 
 using Position = std::array<double, 3>;  ///< metres
-double distance(const Position& a, const Position& b);
 
 /// Stations from here on are of foreign networks (a fault); all receive them with the power they send with.
 inline constexpr std::size_t kForeignStation = 1'000'000;
@@ -65,27 +66,22 @@ struct Transmission {
     bool foreign() const { return station >= kForeignStation; }
 };
 
-/// What keeps a frame from a receiver.
-enum class Obstacle : std::uint8_t {
-    None,
-    Weak,       ///< below the sensitivity
-    Busy,       ///< the receiver transmits itself
-    Collision,  ///< another frame is too strong beside it
-};
+using air::Fate;
 
 class Medium {
   public:
     Medium(const Propagation& propagation, std::vector<Position> positions)
         : propagation_(propagation), positions_(std::move(positions)) {}
 
-    void add(const Transmission& transmission) { on_air_.push_back(transmission); }
+    void add(const Transmission& transmission) { on_air_.add(transmission); }
     /// Transmissions that ended before `time` are forgotten.
     void forget_before(cosim::Time time);
 
     double received_dbm(const Transmission& transmission, std::size_t receiver) const;
-    /// To be asked when the transmission ends. `foreign`: the foreign frame that alone makes the collision.
-    Obstacle obstacle(const Transmission& transmission, std::size_t receiver,
-                      const Transmission** foreign = nullptr) const;
+    /// To be asked when the transmission ends, of all but noise. `foreign`: the foreign frame that alone
+    /// makes the collision.
+    Fate fate(const Transmission& transmission, std::size_t receiver,
+              const Transmission** foreign = nullptr) const;
     /// Something on the channel that is stronger than `threshold_dbm` at the station, a module's first.
     const Transmission* busy(std::size_t station, std::uint8_t channel, double threshold_dbm,
                              cosim::Time now) const;
@@ -96,7 +92,7 @@ class Medium {
   private:
     Propagation propagation_;
     std::vector<Position> positions_;
-    std::vector<Transmission> on_air_;
+    air::OnAir<Transmission> on_air_;
 };
 
 }  // namespace puckloop::radio

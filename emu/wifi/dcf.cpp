@@ -236,25 +236,8 @@ void Dcf::heard(const Transmission& sent, std::size_t number, Fate fate) {
 void Dcf::meant_for(const Transmission& sent, const Frame* frame, std::size_t number, Fate fate) {
     Station& station = stations_[number];
     user_.became(sent, number, fate);
-    switch (fate) {
-    case Fate::Read:
-        break;
-    case Fate::Weak:
-        ++station.counts.weak;
-        return;
-    case Fate::Noise:
-        ++station.counts.noise;
-        return;
-    case Fate::Collision:
-        ++station.counts.collisions;
-        return;
-    case Fate::Sending:
-        ++station.counts.sending;
-        return;
-    case Fate::Away:
-        ++station.counts.away;
-        return;
-    }
+    station.counts.losses.count(fate);
+    if (fate != Fate::Read) return;
     if (sent.acknowledges) return;
     ++station.counts.read;
     if (sent.hop_to == number) {

@@ -24,13 +24,12 @@ struct DcfCounts {
     std::uint64_t frames = 0;  ///< sent, with those sent again and acknowledgements
     std::uint64_t again = 0;   ///< of them, a further attempt
     std::uint64_t acks = 0;
-    std::uint64_t dropped = 0;                                       ///< not acknowledged in any attempt
-    std::uint64_t queue_full = 0;                                    ///< not taken
-    std::uint64_t read = 0;                                          ///< frames meant for it
-    std::uint64_t twice = 0;                                         ///< of them, read before
-    std::uint64_t weak = 0, noise = 0, collisions = 0, sending = 0;  ///< meant for it and not read
-    std::uint64_t away = 0;                                          ///< likewise: it was away
-    cosim::Time air = 0;                                             ///< its frames took
+    std::uint64_t dropped = 0;     ///< not acknowledged in any attempt
+    std::uint64_t queue_full = 0;  ///< not taken
+    std::uint64_t read = 0;        ///< frames meant for it
+    std::uint64_t twice = 0;       ///< of them, read before
+    Losses losses;
+    cosim::Time air = 0;  ///< its frames took
 };
 
 /// Who uses the stations, and who writes down what becomes of frames.

@@ -1,5 +1,7 @@
 #include "emu/wifi/medium.h"
 
+#include "emu/air/power.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@ using cosim::Time;
 
 namespace {
 
-constexpr double kNearest = 0.1;          // m: closer, the far field's law does not hold
 constexpr double kNoiseOfSource = -91.0;  // dBm, for which sensitivities are stated
 constexpr double kLostAtSensitivity = 0.1;
 constexpr double kOctetsOfSource = 1000.0;
@@ -24,16 +25,11 @@ double milliwatts(double dbm) {
 
 /// Chance that a frame is lost which arrives so many dB above what it needs.
 double loss(double margin, std::size_t octets) {
-    const double of_source = std::min(1.0, kLostAtSensitivity * std::pow(10.0, -margin));
+    const double of_source = std::min(1.0, air::lost_in_noise(kLostAtSensitivity, margin));
     return 1.0 - std::pow(1.0 - of_source, static_cast<double>(octets) / kOctetsOfSource);
 }
 
 }  // namespace
-
-const char* name_of(Fate fate) {
-    constexpr std::array kNames{"read", "weak", "noise", "collision", "sending", "away"};
-    return kNames[static_cast<std::size_t>(fate)];
-}
 
 Medium::Medium(const WifiSettings& settings, std::vector<std::string> names, std::vector<Position> positions,
                std::uint64_t seed)
@@ -66,11 +62,10 @@ double Medium::body_loss(std::size_t from, std::size_t to) const {
 }
 
 double Medium::received_dbm(std::size_t from, std::size_t to) const {
-    const double distance =
-        std::hypot(positions_[from][0] - positions_[to][0], positions_[from][1] - positions_[to][1]);
-    return settings_.power - settings_.loss_at_1m -
-           10.0 * settings_.exponent * std::log10(std::max(distance, kNearest)) - shadows_[from][to] -
-           body_loss(from, to) - obstacles_.loss_between(positions_[from], positions_[to]);
+    const double distance = air::in_far_field(air::distance(positions_[from], positions_[to]));
+    return settings_.power - settings_.loss_at_1m - air::fall(settings_.exponent, distance) -
+           shadows_[from][to] - body_loss(from, to) -
+           obstacles_.loss_between(positions_[from], positions_[to]);
 }
 
 const Transmission& Medium::add(Transmission transmission) {
@@ -79,18 +74,18 @@ const Transmission& Medium::add(Transmission transmission) {
         transmission.dbm[to] = transmission.station == kInterference ? settings_.burst_power
                                : to == transmission.station          ? settings_.power
                                                                      : received_dbm(transmission.station, to);
-    on_air_.push_back(std::move(transmission));
-    return on_air_.back();
+    return on_air_.add(std::move(transmission));
 }
 
 Fate Medium::judge(const Transmission& transmission, std::size_t receiver, RandomStream& random) const {
     double disturbance = 0.0;
-    for (const Transmission& other : on_air_) {
-        if (other.id == transmission.id || other.end <= transmission.start || other.start >= transmission.end)
-            continue;
-        if (other.station == receiver) return Fate::Sending;
+    bool sending = false;
+    on_air_.look_beside(transmission, [&](const Transmission& other) {
+        sending = other.station == receiver;
         disturbance += milliwatts(other.dbm[receiver]);
-    }
+        return !sending;
+    });
+    if (sending) return Fate::Sending;
     const double noise = milliwatts(settings_.noise);
     const double needed = transmission.rate->sensitivity_dbm - kNoiseOfSource;  // above the noise, dB
     const auto loss_in = [&](double power) {
@@ -107,7 +102,7 @@ void Medium::forget() {
     Time oldest = cosim::kNever;
     for (const Transmission& one : on_air_)
         if (!one.over) oldest = std::min(oldest, one.start);
-    std::erase_if(on_air_, [&](const Transmission& one) { return one.over && one.end <= oldest; });
+    on_air_.forget([&](const Transmission& one) { return one.over && one.end <= oldest; });
 }
 
 }  // namespace puckloop::wifi

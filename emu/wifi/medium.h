@@ -14,10 +14,11 @@
 
 #include "base/random.h"
 #include "cosim/core/octets.h"
+#include "emu/air/fate.h"
+#include "emu/air/on_air.h"
 #include "emu/wifi/obstacles.h"
 #include "emu/wifi/phy.h"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -54,9 +55,8 @@ struct Transmission {
     bool over = false;          ///< it has ended, and is kept for those that it overlaps
 };
 
-/// What became of a frame at a station.
-enum class Fate : std::uint8_t { Read, Weak, Noise, Collision, Sending, Away };
-const char* name_of(Fate fate);
+using air::Fate;
+using air::Losses;
 
 class Medium {
   public:
@@ -79,8 +79,8 @@ class Medium {
     Fate judge(const Transmission& transmission, std::size_t receiver, RandomStream& random) const;
     /// Those that are over are forgotten, unless they overlap one that is not.
     void forget();
-    std::vector<Transmission>& on_air() { return on_air_; }
-    const std::vector<Transmission>& on_air() const { return on_air_; }
+    air::OnAir<Transmission>& on_air() { return on_air_; }
+    const air::OnAir<Transmission>& on_air() const { return on_air_; }
 
   private:
     WifiSettings settings_;
@@ -90,7 +90,7 @@ class Medium {
     std::vector<std::size_t> bodies_;
     Obstacles obstacles_{{}, -1, 0.0};
     std::vector<std::vector<double>> shadows_;  ///< dB, of each pair
-    std::vector<Transmission> on_air_;          ///< in the order in which they began
+    air::OnAir<Transmission> on_air_;           ///< in the order in which they began
 };
 
 }  // namespace puckloop::wifi

@@ -59,10 +59,18 @@ std::vector<protocols::MacAddress> macs_of(const WifiSpec& spec) {
 }
 
 nlohmann::ordered_json to_json(const DcfCounts& counts) {
-    return {{"frames", counts.frames},   {"again", counts.again}, {"acks", counts.acks},
-            {"dropped", counts.dropped}, {"read", counts.read},   {"read_twice", counts.twice},
-            {"weak", counts.weak},       {"noise", counts.noise}, {"collisions", counts.collisions},
-            {"sending", counts.sending}, {"away", counts.away},   {"air_s", cosim::to_seconds(counts.air)}};
+    return {{"frames", counts.frames},
+            {"again", counts.again},
+            {"acks", counts.acks},
+            {"dropped", counts.dropped},
+            {"read", counts.read},
+            {"read_twice", counts.twice},
+            {"weak", counts.losses.weak},
+            {"noise", counts.losses.noise},
+            {"collisions", counts.losses.collisions},
+            {"sending", counts.losses.sending},
+            {"away", counts.losses.away},
+            {"air_s", cosim::to_seconds(counts.air)}};
 }
 
 }  // namespace
@@ -288,7 +296,8 @@ void WifiNode::became(const Transmission& sent, std::size_t station, Fate fate) 
     if (fate == Fate::Away)
         computers_.faults().missed(sent.end, sent.id,
                                    fmt::format("a frame of {} is not read", names_[sent.station]), sent.end);
-    write(sent.start, sent.end, sent.station, names_[station], kind, &sent, sent.dbm[station], name_of(fate));
+    write(sent.start, sent.end, sent.station, names_[station], kind, &sent, sent.dbm[station],
+          air::name_of(fate));
 }
 
 void WifiNode::dropped(std::size_t station, const Frame& frame, Time now) {

@@ -3,27 +3,26 @@
 //
 // Exit status: 2 wrong use, or a socket that cannot be made.
 
-#include <netdb.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
+#include "base/relay/octet_relay.h"
 
-#include <algorithm>
-#include <array>
-#include <cerrno>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fcntl.h>
 #include <list>
+#include <memory>
 #include <string>
-#include <vector>
+#include <utility>
 
 namespace {
 
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+using Local = boost::asio::local::stream_protocol;
+
 constexpr int kWrongUse = 2;
-constexpr std::size_t kBlock = 64 * 1024;  // what waits in one direction at most
 constexpr std::size_t kMostCallers = 256;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -31,128 +30,57 @@ constexpr std::size_t kMostCallers = 256;
     std::exit(kWrongUse);
 }
 
+std::size_t callers = 0;
+
+class Caller : public puckloop::OctetRelay<Local::socket, tcp::socket> {
+  public:
+    Caller(Local::socket outer, boost::asio::io_context& io) : OctetRelay(std::move(outer), tcp::socket(io)) {
+        ++callers;
+    }
+    ~Caller() { --callers; }
+    Caller(const Caller&) = delete;
+    Caller& operator=(const Caller&) = delete;
+};
+
 struct Door {
     std::string host, port;
-    int listener = -1;
+    Local::acceptor acceptor;
 };
 
-/// Octets from one end to the other.
-struct Flow {
-    std::array<char, kBlock> octets{};
-    std::size_t begin = 0, end = 0;
-    bool over = false;    ///< the source has ended
-    bool passed = false;  ///< and the sink has been informed
+void report(const Door& door, const error_code& error) {
+    std::printf("%s:%s: %s\n", door.host.c_str(), door.port.c_str(), error.message().c_str());
+}
 
-    bool empty() const { return begin == end; }
-};
+void welcome(const Door& door, Local::socket outer, boost::asio::io_context& io) {
+    if (callers >= kMostCallers) return;
+    error_code error;
+    const auto found = tcp::resolver(io).resolve(tcp::v4(), door.host, door.port, error);
+    if (error) return report(door, error);
+    auto caller = std::make_shared<Caller>(std::move(outer), io);
+    caller->second().async_connect(found.begin()->endpoint(), [caller, &door](const error_code& failed) {
+        if (failed) return report(door, failed);
+        caller->begin();
+    });
+}
 
-struct Caller {
-    int outer = -1, inner = -1;
-    bool connecting = true;
-    Flow in, out;
-};
+void accept(Door& door, boost::asio::io_context& io) {
+    door.acceptor.async_accept([&door, &io](const error_code& error, Local::socket outer) {
+        if (!error) welcome(door, std::move(outer), io);
+        accept(door, io);
+    });
+}
 
-Door open_door(const std::string& text) {
+Door open_door(const std::string& text, boost::asio::io_context& io) {
     const std::size_t equals = text.find('='), colon = text.rfind(':');
     if (equals == std::string::npos || colon == std::string::npos || colon < equals)
         refuse("'" + text + "' is not PATH=HOST:PORT");
     const std::string path = text.substr(0, equals);
-    Door door{text.substr(equals + 1, colon - equals - 1), text.substr(colon + 1)};
-    sockaddr_un place{};
-    place.sun_family = AF_UNIX;
-    if (path.empty() || path.size() >= sizeof place.sun_path) refuse("'" + path + "' is no path of a socket");
-    std::copy(path.begin(), path.end(), place.sun_path);
-    door.listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    constexpr int kBacklog = 16;
-    if (door.listener < 0 ||
-        bind(door.listener, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0 ||
-        listen(door.listener, kBacklog) != 0)
-        refuse(path + ": " + std::strerror(errno));
-    return door;
-}
-
-/// A connection that has begun; -1: there is no way, and why is printed.
-int connect_inside(const Door& door) {
-    addrinfo wanted{}, *found = nullptr;
-    wanted.ai_family = AF_INET;
-    wanted.ai_socktype = SOCK_STREAM;
-    if (const int error = getaddrinfo(door.host.c_str(), door.port.c_str(), &wanted, &found); error != 0) {
-        std::printf("%s:%s: %s\n", door.host.c_str(), door.port.c_str(), gai_strerror(error));
-        return -1;
+    try {
+        return {text.substr(equals + 1, colon - equals - 1), text.substr(colon + 1),
+                Local::acceptor(io, Local::endpoint(path))};
+    } catch (const boost::system::system_error& error) {
+        refuse(path + ": " + error.code().message());
     }
-    const int inner = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    const bool begun =
-        inner >= 0 && (connect(inner, found->ai_addr, found->ai_addrlen) == 0 || errno == EINPROGRESS);
-    if (!begun) {
-        std::printf("%s:%s: %s\n", door.host.c_str(), door.port.c_str(), std::strerror(errno));
-        if (inner >= 0) close(inner);
-    }
-    freeaddrinfo(found);
-    return begun ? inner : -1;
-}
-
-/// False once the connection is broken.
-bool take(int from, Flow& flow) {
-    if (!flow.empty() || flow.over) return true;
-    const ssize_t got = recv(from, flow.octets.data(), flow.octets.size(), 0);
-    if (got < 0) return errno == EAGAIN || errno == EINTR;
-    flow.begin = 0;
-    flow.end = static_cast<std::size_t>(got);
-    flow.over = got == 0;
-    return true;
-}
-
-bool give(int to, Flow& flow) {
-    while (!flow.empty()) {
-        const ssize_t sent = send(to, flow.octets.data() + flow.begin, flow.end - flow.begin, MSG_NOSIGNAL);
-        if (sent < 0) return errno == EAGAIN || errno == EINTR;
-        flow.begin += static_cast<std::size_t>(sent);
-    }
-    if (flow.over && !flow.passed) {
-        shutdown(to, SHUT_WR);
-        flow.passed = true;
-    }
-    return true;
-}
-
-/// False once it has ended.
-bool serve(Caller& caller, short outer, short inner) {
-    if (caller.connecting) {
-        if ((inner & (POLLOUT | POLLERR | POLLHUP)) == 0) return true;
-        int error = 0;
-        socklen_t size = sizeof error;
-        getsockopt(caller.inner, SOL_SOCKET, SO_ERROR, &error, &size);
-        if (error != 0) {
-            std::printf("not connected: %s\n", std::strerror(error));
-            return false;
-        }
-        caller.connecting = false;
-        return true;
-    }
-    if ((outer & (POLLIN | POLLHUP | POLLERR)) != 0 && !take(caller.outer, caller.in)) return false;
-    if ((inner & (POLLIN | POLLHUP | POLLERR)) != 0 && !take(caller.inner, caller.out)) return false;
-    if (!give(caller.inner, caller.in) || !give(caller.outer, caller.out)) return false;
-    return !(caller.in.passed && caller.out.passed);
-}
-
-short wanted_of(const Flow& incoming, const Flow& outgoing) {
-    short events = 0;
-    if (incoming.empty() && !incoming.over) events |= POLLIN;
-    if (!outgoing.empty()) events |= POLLOUT;
-    return events;
-}
-
-void welcome(const Door& door, std::list<Caller>& callers) {
-    const int outer = accept4(door.listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (outer < 0) return;
-    const int inner = callers.size() < kMostCallers ? connect_inside(door) : -1;
-    if (inner < 0) {
-        close(outer);
-        return;
-    }
-    Caller& caller = callers.emplace_back();
-    caller.outer = outer;
-    caller.inner = inner;
 }
 
 }  // namespace
@@ -160,34 +88,11 @@ void welcome(const Door& door, std::list<Caller>& callers) {
 int main(int count, char** words) {
     if (count < 2) refuse("usage: puckloop-gate PATH=HOST:PORT...");
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
-    std::vector<Door> doors;
-    for (int i = 1; i < count; ++i)
-        doors.push_back(open_door(words[i]));
-    std::list<Caller> callers;
-    std::vector<pollfd> watched;
-    for (;;) {
-        watched.clear();
-        for (const Door& door : doors)
-            watched.push_back({door.listener, POLLIN, 0});
-        for (const Caller& caller : callers) {
-            watched.push_back(
-                {caller.outer, caller.connecting ? short{0} : wanted_of(caller.in, caller.out), 0});
-            watched.push_back(
-                {caller.inner, caller.connecting ? short{POLLOUT} : wanted_of(caller.out, caller.in), 0});
-        }
-        if (poll(watched.data(), watched.size(), -1) < 0 && errno != EINTR)
-            refuse(std::string("poll: ") + std::strerror(errno));
-        std::size_t at = doors.size();
-        for (auto caller = callers.begin(); caller != callers.end(); at += 2) {
-            if (serve(*caller, watched[at].revents, watched[at + 1].revents)) {
-                ++caller;
-                continue;
-            }
-            close(caller->outer);
-            close(caller->inner);
-            caller = callers.erase(caller);
-        }
-        for (std::size_t i = 0; i < doors.size(); ++i)
-            if ((watched[i].revents & POLLIN) != 0) welcome(doors[i], callers);
+    boost::asio::io_context io;
+    std::list<Door> doors;
+    for (int i = 1; i < count; ++i) {
+        doors.push_back(open_door(words[i], io));
+        accept(doors.back(), io);
     }
+    io.run();
 }

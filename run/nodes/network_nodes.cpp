@@ -1,6 +1,5 @@
 #include "run/nodes/network_nodes.h"
 
-#include "cosim/trace/trace_hash.h"
 #include "physics/world/pose_signals.h"
 #include "run/nodes/linux_nodes.h"
 #include "run/nodes/plan_kit.h"
@@ -163,9 +162,9 @@ void add_network(RunSetup& setup, const RunRequest& request) {
 void add_messages(RunSetup& setup) {
     if (scenarios::computers_of(setup.scenario).empty()) return;
     // Not in trace.csv: what was sent is in the world's log, and arrives as a packet.
-    const std::string port(cosim::kHandsPort);
-    cosim::LinkSpec messages{"network.messages", {kNetwork, port}, {"world", port}};
+    cosim::LinkSpec messages{"network.messages", {kNetwork, "messages"}, {"world", "messages"}};
     messages.record_from_b = false;
+    messages.hashed_when_unused = false;
     setup.links.push_back(messages);
 }
 

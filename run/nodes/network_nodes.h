@@ -14,7 +14,8 @@ void join_network(const RunSetup& setup, const std::string& computer, LinuxProgr
 /// The world states to the network where its robots are, or what stands between radios.
 bool hears_world(const scenarios::Scenario& scenario);
 
-/// The link for what events send to computers of the network. Behind all others (cosim/trace/trace_hash.h).
+/// The link for what events send to computers of the network. Behind all others
+/// (LinkSpec::hashed_when_unused).
 void add_messages(RunSetup& setup);
 
 /// Network, hosts and links. After the robots. Throws InputError.

@@ -241,8 +241,9 @@ TEST_CASE("the hash is a fixed function of the messages") {
 }
 
 TEST_CASE("a link that only hands use is in the hash once they do") {
-    const LinkSpec wire{"wire", {"left", "uart0"}, {"right", "uart0"}},
-        hands{"hands", {"left", std::string(kHandsPort)}, {"right", std::string(kHandsPort)}};
+    const LinkSpec wire{"wire", {"left", "uart0"}, {"right", "uart0"}};
+    LinkSpec hands{"hands", {"left", "hands"}, {"right", "hands"}};
+    hands.hashed_when_unused = false;
     const auto hash_of = [](const std::vector<LinkSpec>& links, bool used) {
         TraceHash hash;
         hash.begin(links);
@@ -256,7 +257,7 @@ TEST_CASE("a link that only hands use is in the hash once they do") {
     CHECK(hash_of({wire, hands}, false) == plain);
     CHECK(hash_of({wire, hands}, true) != plain);
     LinkSpec other = hands;
-    other.a.port = "uart1";
+    other.hashed_when_unused = true;
     CHECK(hash_of({wire, other}, false) != plain);
 }
 

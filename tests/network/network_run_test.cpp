@@ -97,6 +97,21 @@ TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[n
           1);
 }
 
+TEST_CASE("what servers and tools ask of sockets is as the host's kernel answers it", "[network]") {
+    const Workbench bench;
+    const auto file = bench.file("more.toml", hosts({{"alpha", python("more_calls.py")}}, "8 s"));
+    const Ended ended = bench.run("o", {file, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    Process host({kPython, "-B", "-S", "-E", kPrograms + "more_calls.py"}, bench.folder());
+    const Ended real = host.wait();
+    INFO(real.err);
+    CHECK(log_of(bench, "o", "alpha") == real.out);
+    CHECK(real.out.ends_with("type EINVAL\n"));
+    REQUIRE(bench.run("apart", {file}).status == 0);
+    check_same_run(bench, "o", "apart");
+}
+
 TEST_CASE("robots talk to each other and to a server by Python's sockets, the same in every placement",
           "[network]") {
     const Workbench bench;
@@ -262,6 +277,40 @@ TEST_CASE("nc on both ends", "[network]") {
     CHECK(log_of(bench, "o0", "client") == "0\n");
 }
 
+TEST_CASE("curl, requests, iperf3, nc and ping between four robots, with range and loss", "[network]") {
+    for (const char* tool : {"/usr/bin/curl", "/usr/bin/iperf3", "/usr/bin/nc", "/usr/bin/ping"})
+        if (!fs::exists(tool)) {
+            WARN("there is no " << tool << ": skipped");
+            return;
+        }
+    const Workbench bench;
+    const std::vector<std::string> programs{
+        "iperf3 -s -1 > /dev/null & nc -l -p 7000 & python3 -B -m http.server 8000 2> /dev/null",
+        "sleep 2; curl -s -o /dev/null -w '%{http_code} %{size_download}\\n' http://robot0:8000/more.toml; "
+        "echo by nc | nc -N robot0 7000",
+        "sleep 2; python3 -B -c 'import requests; "
+        "print(requests.get(\\\"http://robot0:8000/more.toml\\\").status_code)'",
+        "sleep 2; ping -c 3 -i 0.2 robot1 | grep received; iperf3 -c robot0 -u -b 200K -t 1 -J | grep -c "
+        "jitter"};
+    std::string text =
+        "[run]\nduration = \"6 s\"\n[arena]\nsize = [\"3 m\", \"2 m\"]\n[network]\nmode = \"wifi\"\n"
+        "access_point = [\"6 m\", \"1 m\"]\n";
+    for (std::size_t i = 0; i < programs.size(); ++i)
+        text += fmt::format("[[robot]]\nposition = [\"{} cm\", \"0 cm\"]\n[robot.pic]\nfirmware = \"own\"\n"
+                            "[robot.linux]\nprogram = [\"sh\", \"-c\", \"cd {}; {}; sleep 60\"]\n",
+                            40 * i, bench.folder().string(), programs[i]);
+    text += "[[fault]]\nnode = \"network\"\nkind = \"loss\"\nprobability = 0.05\n";
+    bench.file("more.toml", text);
+    check_everywhere(bench, bench.folder() / "more.toml");
+    CHECK(log_of(bench, "o0", "robot1").find(fmt::format("200 {}\n", text.size())) != std::string::npos);
+    CHECK(log_of(bench, "o0", "robot2") == "200\n");
+    const std::string log = log_of(bench, "o0", "robot3");
+    INFO(log);
+    CHECK(log.find("received") != std::string::npos);
+    CHECK(log.find(", 100% packet loss") == std::string::npos);
+    CHECK(count(log_of(bench, "o0", "robot0"), "by nc\n") == 1);
+}
+
 TEST_CASE("a lossy network shows as retransmission and time, not as wrong data", "[network]") {
     const Workbench bench;
     const auto file = bench.file(
@@ -360,6 +409,40 @@ TEST_CASE("names are not answered while the fault lasts", "[network]") {
     const Ended apart = bench.run("apart", {file, "--fault", words[3]});
     REQUIRE(apart.status == 0);
     check_same_run(bench, "o", "apart");
+}
+
+TEST_CASE("programs with a resolver of their own ask the board's, and a silent one is evidence",
+          "[network][dns]") {
+    const Workbench bench;
+    const auto text = [](const Words& words) {
+        return hosts({{"server", R"(["true"])"}, {"client", python("dns_questions.py", words)}}, "6 s");
+    };
+    check_everywhere(bench, bench.file("ask.toml", text({})));
+    CHECK(log_of(bench, "o0", "client") ==
+          "servers ['127.0.0.53']\nserver 1 10.0.0.254\nSERVER 1 10.0.0.254\nnobody 1 status 3\n"
+          "server 28 status 0\n254.0.0.10.in-addr.arpa 12 server\n");
+    CHECK(bench.report("o0")["nodes"]["client.linux"]["warnings"] ==
+          nlohmann::json::array({"no computer of the network has the name 'nobody'"}));
+    const Ended ended = bench.run("silent", {bench.file("silent.toml", text({"wait"})), "--in-process",
+                                             "--fault", "dns_silence node=client.linux begin=1500ms for=1s"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    const std::string log = log_of(bench, "silent", "client");
+    INFO(log);
+    CHECK(count(log, "10.0.0.254\n") == 3);
+    CHECK(count(log, "2.0 no answer\n") == 1);
+    const auto fault = bench.report("silent")["faults"][0];
+    CHECK(fault["fired"] == 1);
+    CHECK(fault["firings"][0]["what"] == "the question for server is not answered");
+    if (!fs::exists("/usr/bin/dig")) return;
+    const std::string dig =
+        R"(["sh", "-c", "dig +short server; dig +short -x 10.0.0.254; dig nobody | grep -c NXDOMAIN"])";
+    REQUIRE(
+        bench
+            .run("dig", {bench.file("dig.toml", hosts({{"server", R"(["true"])"}, {"client", dig}}, "9 s")),
+                         "--in-process"})
+            .status == 0);
+    CHECK(log_of(bench, "dig", "client") == "10.0.0.254\nserver.\n1\n");
 }
 
 TEST_CASE("a server that is killed ends its connections, and one that is paused does not", "[network]") {

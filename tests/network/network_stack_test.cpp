@@ -2,9 +2,12 @@
 
 #include "linuxboard/shim/network/network_stack.h"
 
+#include "protocols/dns_message.h"
+
 #include <catch2/catch.hpp>
 
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -240,6 +243,36 @@ TEST_CASE("a full backlog makes others wait, and nothing is left when all is clo
     CHECK(boards.b.next_event() == cosim::kNever);
 }
 
+TEST_CASE("a socket may connect to itself, and two to each other at once", "[network]") {
+    Boards boards;
+    NetworkStack& a = boards.a;
+    const int self = a.open(true);
+    REQUIRE(a.bind(self, {kLocalHost, 7000}) == 0);
+    CHECK(a.connect(self, {kLocalHost, 7000}, 0) == EINPROGRESS);
+    CHECK(a.events(self) == 0);
+    boards.pass(kMillisecond);
+    CHECK(a.connecting(self) == 0);
+    std::size_t taken = 0;
+    CHECK(a.send(self, std::nullopt, "me", taken, boards.now) == 0);
+    boards.pass(kMillisecond);
+    CHECK(received(a, self, boards.now) == "me");
+    const int left = a.open(true), right = boards.b.open(true);
+    REQUIRE(a.bind(left, {0, 7001}) == 0);
+    REQUIRE(boards.b.bind(right, {0, 7002}) == 0);
+    CHECK(a.connect(left, {kB, 7002}, boards.now) == EINPROGRESS);
+    CHECK(boards.b.connect(right, {kA, 7001}, boards.now) == EINPROGRESS);
+    boards.pass(10 * kMillisecond);
+    CHECK(a.connecting(left) == 0);
+    CHECK(boards.b.connecting(right) == 0);
+    CHECK(a.send(left, std::nullopt, "both", taken, boards.now) == 0);
+    boards.pass(10 * kMillisecond);
+    CHECK(received(boards.b, right, boards.now) == "both");
+    boards.a.close_all(boards.now);
+    boards.b.close_all(boards.now);
+    boards.pass(200 * kSecond);
+    CHECK(a.next_event() == cosim::kNever);
+}
+
 TEST_CASE("a board talks to itself", "[network]") {
     Boards boards;
     NetworkStack& a = boards.a;
@@ -256,6 +289,108 @@ TEST_CASE("a board talks to itself", "[network]") {
     boards.pass(kMillisecond);
     CHECK(received(a, server, boards.now) == "me");
     CHECK(boards.packets == 0);
+}
+
+namespace {
+/// A query for `name`, of type A or PTR.
+std::string dns_query(const std::string& name, std::uint16_t type = protocols::kDnsAddress) {
+    const std::string head("\x12\x34\x01\0\0\x01\0\0\0\0\0\0", 12);
+    return head + protocols::dns_data(name) + '\0' + static_cast<char>(type) + std::string("\0\1", 2);
+}
+}  // namespace
+
+TEST_CASE("the board's resolver knows the computers of the network", "[network][dns]") {
+    Boards boards;
+    NetworkStack& a = boards.a;
+    const int socket = a.open(false);
+    const Endpoint resolver{kResolver, protocols::kDnsPort};
+    REQUIRE(a.connect(socket, resolver, 0) == 0);
+    const auto ask = [&](const std::string& name, std::uint16_t type = protocols::kDnsAddress) {
+        std::size_t taken = 0;
+        REQUIRE(a.send(socket, std::nullopt, dns_query(name, type), taken, boards.now) == 0);
+        boards.pass(kMillisecond);
+        return received(a, socket, boards.now);
+    };
+    const auto status = [](const std::string& answer) { return answer.size() < 12 ? -1 : answer[3] & 0xf; };
+    CHECK(ask("b").ends_with(std::string("\0\4\x0a\0\0\2", 6)));
+    CHECK(ask("B").ends_with(std::string("\0\4\x0a\0\0\2", 6)));
+    CHECK(ask("localhost").ends_with(std::string("\0\4\x7f\0\0\1", 6)));
+    CHECK(ask("2.0.0.10.in-addr.arpa", protocols::kDnsPointer).ends_with(std::string("\0\3\1b\0", 5)));
+    // Such a name, but no such record; nobody's name; nobody's address.
+    constexpr std::uint16_t kSixAddress = 28;
+    const std::string none = ask("b", kSixAddress);
+    CHECK(status(none) == 0);
+    CHECK(none.substr(6, 2) == std::string("\0\0", 2));
+    CHECK(status(ask("nobody")) == 3);
+    CHECK(status(ask("9.0.0.10.in-addr.arpa", protocols::kDnsPointer)) == 3);
+    CHECK(a.unknown_names() == std::set<std::string>{"9.0.0.10.in-addr.arpa", "nobody"});
+    CHECK(boards.packets == 0);  // nothing of it is on the network
+    bool silent = true;
+    std::string asked;
+    a.set_silence([&](Time, std::string_view name) {
+        asked = name;
+        return silent;
+    });
+    CHECK(ask("b").empty());
+    CHECK(asked == "b");
+    silent = false;
+    CHECK(status(ask("b")) == 0);
+    CHECK(a.bind(a.open(false), resolver) == EADDRINUSE);
+}
+
+TEST_CASE("echoes are answered by the other board, and come back to the socket that sent them", "[network]") {
+    Boards boards;
+    NetworkStack& a = boards.a;
+    const int first = a.open(SocketKind::Echo), second = a.open(SocketKind::Echo);
+    const auto ask = [&](int socket, const std::string& message, protocols::IpAddress to = kB) {
+        return send_to(a, socket, {to, 0}, message, boards.now);
+    };
+    // Type, code, checksum, identifier, sequence number, data.
+    const std::string echo("\x08\0..??\0\7data", 12);
+    CHECK(ask(first, "short") == EINVAL);
+    CHECK(ask(first, "no echo request") == EINVAL);
+    CHECK(ask(first, echo, 0x08080808) == ENETUNREACH);
+    CHECK(ask(first, echo, kAll) == EACCES);
+    CHECK(ask(first, echo) == 0);
+    CHECK(ask(second, echo) == 0);
+    boards.pass(kMillisecond);
+    CHECK(boards.packets == 4);
+    Endpoint own;
+    for (const int socket : {first, second}) {
+        NetworkStack::Received one;
+        REQUIRE(a.receive(socket, 100, false, one, boards.now) == 0);
+        CHECK(one.from == Endpoint{kB, 0});
+        CHECK(one.time_to_live == 64);
+        CHECK(one.data.substr(0, 2) == std::string("\0\0", 2));
+        CHECK(one.data.substr(6) == std::string("\0\7data", 6));
+        REQUIRE(a.name_of(socket, false, own) == 0);
+        CHECK(one.data.substr(4, 2) ==
+              std::string{static_cast<char>(own.port >> 8), static_cast<char>(own.port)});
+        CHECK(a.receive(socket, 100, false, one, boards.now) == EAGAIN);
+    }
+    // Its own address, and one that nobody has.
+    CHECK(ask(first, echo, kA) == 0);
+    CHECK(ask(first, echo, kNobody) == 0);
+    boards.pass(kMillisecond);
+    CHECK(boards.packets == 4);
+    CHECK(received(a, first, boards.now).size() == echo.size());
+    CHECK(received(a, first, boards.now).empty());
+}
+
+TEST_CASE("keep-alive finds out that the other board restarted", "[network]") {
+    Boards boards;
+    const auto [client, server] = boards.connected();
+    set_flag(boards.a, client, SOL_SOCKET, SO_KEEPALIVE, 1);
+    for (const int times : {TCP_KEEPIDLE, TCP_KEEPINTVL})
+        set_flag(boards.a, client, IPPROTO_TCP, times, 5);
+    boards.pass(12 * kSecond);
+    CHECK(boards.a.events(client) == (POLLOUT | POLLWRNORM));
+    boards.b = NetworkStack(spec_of("10.0.0.2"), RandomStream(2, "b"));
+    boards.pass(6 * kSecond);
+    CHECK((boards.a.events(client) & (POLLIN | POLLERR | POLLHUP)) == (POLLIN | POLLERR | POLLHUP));
+    NetworkStack::Received one;
+    CHECK(boards.a.receive(client, 1, false, one, boards.now) == ECONNRESET);
+    CHECK(boards.b.counts().no_port == 1);
 }
 
 TEST_CASE("a socket option that is not known is refused", "[network]") {

@@ -242,6 +242,107 @@ TEST_CASE("Nagle holds small pieces back, TCP_NODELAY does not", "[tcp]") {
     }
 }
 
+namespace {
+/// A client that watches its peer: probes after 10 s of silence, each 3 s, four of them.
+TcpConnection::Settings watchful() {
+    return {.keep_alive = true, .keep_idle = 10 * kSecond, .keep_interval = 3 * kSecond, .keep_count = 4};
+}
+}  // namespace
+
+TEST_CASE("a peer that is silent is probed, and stays as long as it answers", "[tcp]") {
+    Line line;
+    line.client.settings() = watchful();
+    line.open();
+    std::vector<Time> probes;
+    line.line = [&](const TcpSegment& segment, bool to_server, std::uint64_t) {
+        if (to_server) {
+            CHECK(segment.data.empty());
+            CHECK(segment.flags == protocols::kAck);
+            probes.push_back(line.now);
+        }
+        return std::vector<Time>{kMillisecond};
+    };
+    const Time opened = 2 * kMillisecond;  // the client's last segment came then
+    line.pass(35 * kSecond);
+    // An answer comes 2 ms after its probe, and the wait begins again.
+    CHECK(probes == std::vector<Time>{opened + 10 * kSecond, opened + 20 * kSecond + 2 * kMillisecond,
+                                      opened + 30 * kSecond + 4 * kMillisecond});
+    CHECK(line.client.state() == State::Established);
+    CHECK(line.server->state() == State::Established);
+}
+
+TEST_CASE("a peer that answers no probe is given up", "[tcp]") {
+    const Time begin = 2 * kMillisecond + 10 * kSecond;
+    for (const Time patience : {Time{0}, 14 * kSecond}) {
+        Line line;
+        line.client.settings() = watchful();
+        line.client.settings().user_timeout = patience;
+        line.open();
+        std::vector<std::pair<Time, int>> sent;
+        line.line = [&](const TcpSegment& segment, bool to_server, std::uint64_t) {
+            if (to_server) sent.emplace_back(line.now - begin, segment.flags);
+            return std::vector<Time>{};
+        };
+        line.pass(100 * kSecond);
+        CHECK(line.client.state() == State::Closed);
+        CHECK(line.client.take_error() == ETIMEDOUT);
+        const auto kProbe = protocols::kAck, kReset = static_cast<protocols::Octet>(protocols::kRst | kProbe);
+        // With TCP_USER_TIMEOUT it counts, not the number of probes.
+        const auto expected = patience == 0 ? std::vector<std::pair<Time, int>>{{0, kProbe},
+                                                                                {3 * kSecond, kProbe},
+                                                                                {6 * kSecond, kProbe},
+                                                                                {9 * kSecond, kProbe},
+                                                                                {12 * kSecond, kReset}}
+                                            : std::vector<std::pair<Time, int>>{
+                                                  {0, kProbe}, {3 * kSecond, kProbe}, {6 * kSecond, kReset}};
+        CHECK(sent == expected);
+    }
+}
+
+TEST_CASE("keep-alive may be switched on and off while a connection is open", "[tcp]") {
+    Line line;
+    line.open();
+    line.pass(20 * kSecond);
+    std::size_t segments = 0;
+    line.line = [&](const TcpSegment&, bool, std::uint64_t) {
+        ++segments;
+        return std::vector<Time>{kMillisecond};
+    };
+    line.client.settings() = watchful();
+    line.client.watch_peer(line.now);
+    line.pass(kSecond);  // silent for longer already
+    CHECK(segments == 2);
+    line.client.settings().keep_alive = false;
+    line.client.watch_peer(line.now);
+    line.pass(100 * kSecond);
+    CHECK(segments == 2);
+    CHECK(line.client.next_event() == kNever);
+}
+
+TEST_CASE("what is not acknowledged in time ends a connection: TCP_USER_TIMEOUT", "[tcp]") {
+    Line line;
+    line.open();
+    line.client.settings().user_timeout = 1500 * kMillisecond;
+    line.line = [](const TcpSegment&, bool, std::uint64_t) { return std::vector<Time>{}; };
+    const Time begin = line.now;
+    line.client.write("x", line.now);
+    line.run([&] { return line.client.state() == State::Closed; });
+    CHECK(line.now - begin == 1500 * kMillisecond);
+    CHECK(line.client.take_error() == ETIMEDOUT);
+}
+
+TEST_CASE("a peer without room is asked as long as it answers, or TCP_USER_TIMEOUT lets it", "[tcp]") {
+    for (const Time patience : {Time{0}, 40 * kSecond}) {
+        Line line({.receive_buffer = 5000});
+        line.client.settings().user_timeout = patience;
+        line.open();
+        line.client.write(text_of(50'000), line.now);
+        line.pass(4000 * kSecond);  // more than 15 probes
+        CHECK((line.client.state() == State::Closed) == (patience > 0));
+        CHECK(line.client.take_error() == (patience > 0 ? ETIMEDOUT : 0));
+    }
+}
+
 TEST_CASE("a reset ends both, and what was read is not lost", "[tcp]") {
     Line line;
     line.open();

@@ -31,19 +31,19 @@ TEST_CASE("what keeps a frame from a receiver") {
     Medium medium({}, {{0, 0, 0}, {1, 0, 0}, {20, 0, 0}, {40, 0, 0}});
     const Transmission from0{1, 0, 12, 1.42, 1000, 2000, 0};
     medium.add(from0);
-    CHECK(medium.obstacle(from0, 1) == Obstacle::None);
-    CHECK(medium.obstacle(from0, 2) == Obstacle::None);
-    CHECK(medium.obstacle(from0, 3) == Obstacle::Weak);
+    CHECK(medium.fate(from0, 1) == Fate::Read);
+    CHECK(medium.fate(from0, 2) == Fate::Read);
+    CHECK(medium.fate(from0, 3) == Fate::Weak);
     CHECK(medium.busy(1, 12, -60, 1500));
     CHECK_FALSE(medium.busy(1, 13, -60, 1500));
     CHECK_FALSE(medium.busy(1, 12, -60, 2000));
     CHECK_FALSE(medium.busy(2, 12, -60, 1500));
     // Station 3 sends as well: too weak to harm 1, as strong as 0 at 2.
     medium.add({2, 3, 12, 1.42, 1500, 2500, 0});
-    CHECK(medium.obstacle(from0, 1) == Obstacle::None);
-    CHECK(medium.obstacle(from0, 2) == Obstacle::Collision);
+    CHECK(medium.fate(from0, 1) == Fate::Read);
+    CHECK(medium.fate(from0, 2) == Fate::Collision);
     medium.add({3, 1, 12, 1.42, 1999, 2500, 0});
-    CHECK(medium.obstacle(from0, 1) == Obstacle::Busy);
+    CHECK(medium.fate(from0, 1) == Fate::Sending);
     CHECK(medium.own_until(1, 0, 3000) == 2500);
     CHECK(medium.own_until(1, 0, 1999) == 0);
     medium.forget_before(2600);

@@ -73,7 +73,11 @@ BoardKernel::BoardKernel(const LinuxSpec& spec, LinuxFaults& faults)
                spec.i2c_hold),
       has_tty_(!spec.tty.empty()),
       i2c_files_(spec.i2c.size()) {
-    if (spec.network) network_.emplace(*spec.network, RandomStream(spec.seed, "linux.network." + spec.name));
+    if (!spec.network) return;
+    network_.emplace(*spec.network, RandomStream(spec.seed, "linux.network." + spec.name));
+    if (LinuxFaults::concern_names(spec.faults))
+        network_->set_silence(
+            [this](Time now, std::string_view name) { return faults_.silences(now, name); });
 }
 
 void BoardKernel::finish(std::uint32_t thread, std::int64_t result, int error, Time time, std::string data) {
@@ -133,6 +137,9 @@ void BoardKernel::call(const Request& request, std::string_view data) {
         return;
     case Op::Socket:
         open_socket(request);
+        return;
+    case Op::Take:
+        take_socket(request, data);
         return;
     case Op::Cancel: {
         waiting_.erase(request.thread);
@@ -582,6 +589,7 @@ void BoardKernel::reset(Time now) {
     for (const auto& [thread, waiting] : waiting_)
         adapter_.abandon(thread);
     waiting_.clear();
+    passed_.clear();
     begun_.clear();
     rest_.clear();
     finished_.clear();

@@ -143,6 +143,7 @@ class BoardKernel {
     // board_kernel_sockets.cpp
     static bool is_socket_call(wire::Op op);
     void open_socket(const wire::Request& request);
+    void take_socket(const wire::Request& request, std::string_view data);
     int new_socket_file(int socket);
     bool attempt_socket(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     /// False if `data` is the beginning of a datagram only.
@@ -178,6 +179,11 @@ class BoardKernel {
     std::optional<NetworkStack> network_;
     std::vector<File> files_;
     std::map<std::uint32_t, Waiting> waiting_;
+    struct Passed {
+        int handle = -1;
+        wire::PassedFile file;
+    };
+    std::vector<Passed> passed_;  ///< sockets on their way between processes, each with a reference
     std::map<std::uint32_t, std::string> begun_, rest_;  ///< of datagrams, by thread: sent, received
     std::vector<FinishedCall> finished_;
     std::vector<cosim::UartFrame> frames_;

@@ -32,6 +32,18 @@ wire::SocketAddress as_address(const Endpoint& endpoint) {
     return {endpoint.address, endpoint.port, 0};
 }
 
+std::uint32_t wanted_beside(const SocketOptions& options) {
+    const std::pair<bool, std::uint32_t> all[] = {{options.packet_info, wire::kWithPacketInfo},
+                                                  {options.with_time_to_live, wire::kWithTimeToLive},
+                                                  {options.with_service, wire::kWithService},
+                                                  {options.time_stamp, wire::kWithTime},
+                                                  {options.fine_time_stamp, wire::kWithFineTime}};
+    std::uint32_t wanted = 0;
+    for (const auto& [on, bit] : all)
+        if (on) wanted |= bit;
+    return wanted;
+}
+
 Time end_of(Time since, Time timeout) {
     return timeout == 0 ? kNever : since + timeout;
 }
@@ -39,12 +51,13 @@ Time end_of(Time since, Time timeout) {
 }  // namespace
 
 bool BoardKernel::is_socket_call(Op op) {
-    return op >= Op::Socket && op <= Op::SocketQueue;
+    return op >= Op::Socket && op <= Op::Give;
 }
 
 void BoardKernel::open_socket(const wire::Request& request) {
     if (!network_) return finish(request.thread, -1, EAFNOSUPPORT, request.now);
-    finish_open(request.thread, new_socket_file(network_->open(request.a == 1)), request.now);
+    const int socket = network_->open(static_cast<SocketKind>(std::min(request.a, 2u)));
+    finish_open(request.thread, new_socket_file(socket), request.now);
 }
 
 int BoardKernel::new_socket_file(int socket) {
@@ -116,7 +129,7 @@ bool BoardKernel::attempt_socket(std::uint32_t thread, Waiting& waiting, Time no
         if (request.a == 1) to = take_endpoint(data);
         data.remove_prefix(std::min(waiting.progress, data.size()));
         std::size_t taken = 0;
-        int error = stack.send(socket, to, data, taken, now);
+        int error = stack.send(socket, to, data, taken, now, (request.b & wire::kSendMore) != 0);
         waiting.progress += taken;
         const bool some = waiting.progress > 0;
         if (error == EAGAIN || (error == 0 && taken < data.size())) {
@@ -147,13 +160,32 @@ bool BoardKernel::attempt_socket(std::uint32_t thread, Waiting& waiting, Time no
     case Op::SocketQueue:
         return done(
             static_cast<std::int64_t>(request.a == 1 ? stack.unsent(socket) : stack.readable(socket)));
+    case Op::Give: {
+        Passed passed{request.handle, {}};
+        std::memcpy(&passed.file, data.data(), std::min(sizeof passed.file, data.size()));
+        passed_.push_back(passed);
+        share(request.handle);
+        return done(0);
+    }
     default:
         return done(-1, ENOSYS);
     }
 }
 
+/// The reference goes on to the process that takes it.
+void BoardKernel::take_socket(const wire::Request& request, std::string_view data) {
+    wire::PassedFile wanted;
+    std::memcpy(&wanted, data.data(), std::min(sizeof wanted, data.size()));
+    const auto found = std::find_if(passed_.begin(), passed_.end(),
+                                    [&](const Passed& passed) { return passed.file.inode == wanted.inode; });
+    if (found == passed_.end()) return finish(request.thread, -1, ENOENT, request.now);
+    const Passed passed = *found;
+    passed_.erase(found);
+    finish_open(request.thread, passed.handle, request.now, octets_of(passed.file));
+}
+
 bool BoardKernel::join_pieces(const wire::Request& request, std::string& data) {
-    if (request.b == 1) {
+    if ((request.b & wire::kSendPart) != 0) {
         begun_[request.thread] += data;
         finish(request.thread, 0, 0, request.now);
         return false;
@@ -176,18 +208,32 @@ bool BoardKernel::attempt_receive(std::uint32_t thread, Waiting& waiting, Time n
     const bool peek = (request.b & wire::kReceivePeek) != 0;
     const bool all = (request.b & wire::kReceiveAll) != 0 && network_->is_stream(socket) && !peek;
     NetworkStack::Received received;
-    const int error = network_->receive(socket, request.a - waiting.gathered.size(), peek, received, now);
+    int error = network_->receive(socket, request.a - waiting.gathered.size(), peek, received, now);
+    // Of datagrams the end (shutdown) is for those alone that wait for one.
+    const bool none = error == 0 && received.from == Endpoint{} && !network_->is_stream(socket);
+    if (none && request.nonblocking != 0) error = EAGAIN;
     waiting.gathered += received.data;
     const bool some = !waiting.gathered.empty();
     const bool waits = request.nonblocking == 0 && !late;
     if (error == EAGAIN && waits) return false;
-    const bool at_end = error != 0 || received.data.empty();
+    const bool at_end = error != 0 || received.data.empty() || request.a == 0;
     if (all && waits && !at_end && waiting.gathered.size() < request.a) return false;
+    const auto enough = static_cast<std::size_t>(network_->options(socket).low_water);  // SO_RCVLOWAT
+    const bool low =
+        network_->is_stream(socket) && waiting.gathered.size() < std::min<std::size_t>(enough, request.a);
+    if (low && waits && !peek && !at_end) return false;
     if (error != 0 && !some) {
         finish(thread, -1, error, now);
         return true;
     }
-    const wire::SocketReceived head{as_address(received.from), static_cast<std::uint32_t>(received.size)};
+    const wire::SocketReceived head{as_address(received.from),
+                                    static_cast<std::uint32_t>(received.size),
+                                    received.to,
+                                    wanted_beside(network_->options(socket)),
+                                    received.time_to_live,
+                                    received.service,
+                                    0,
+                                    received.time};
     const auto size = static_cast<std::int64_t>(waiting.gathered.size());
     std::string answer = octets_of(head) + waiting.gathered;
     if (answer.size() > wire::kMaximumData) {

@@ -195,6 +195,15 @@ LinuxFaults::Resolution LinuxFaults::resolve(Time now, std::string_view name) {
     return result;
 }
 
+bool LinuxFaults::silences(Time now, std::string_view name) {
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+        if (kinds_[i] != Kind::DnsSilence || !faults_[i].trigger.open(now)) continue;
+        faults_[i].fired(now, ++calls_, fmt::format("the question for {} is not answered", name));
+        return true;
+    }
+    return false;
+}
+
 Time LinuxFaults::next() const {
     return next_.empty() ? kNever : *std::min_element(next_.begin(), next_.end());
 }

@@ -58,6 +58,8 @@ class LinuxFaults {
         bool failed = false;
     };
     Resolution resolve(cosim::Time now, std::string_view name);
+    /// A question to the board's resolver gets no answer.
+    bool silences(cosim::Time now, std::string_view name);
     /// Some fault concerns names of computers.
     static bool concern_names(const std::vector<cosim::CarriedFault>& faults);
 

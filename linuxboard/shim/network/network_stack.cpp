@@ -26,6 +26,10 @@ constexpr Time kFragmentLife = 30 * cosim::kSecond;  // ipfrag_time
 constexpr std::size_t kMostFragmented = 64;
 constexpr std::uint16_t kFirstPort = 32'768, kPorts = 28'232;  // ip_local_port_range
 
+bool is_opening(const TcpConnection& tcp) {
+    return !tcp.synchronised() && tcp.state() != TcpConnection::State::Closed;
+}
+
 bool is_local(IpAddress address) {
     return address >> 24 == kLocalHost >> 24;
 }
@@ -42,7 +46,7 @@ NetworkPlace place_of(const NetworkSpec& spec) {
 }
 
 NetworkStack::NetworkStack(const NetworkSpec& spec, RandomStream random)
-    : place_(place_of(spec)), random_(random) {
+    : place_(place_of(spec)), names_(spec), random_(random) {
     for (const NetworkName& one : spec.names)
         known_.insert(read_address(one.address));
     next_port_ = static_cast<std::uint16_t>(kFirstPort + random_.below(kPorts));
@@ -128,7 +132,7 @@ void NetworkStack::take_in(const IpPacket& packet, Time now) {
         if (const auto segment = protocols::decode_tcp(packet)) return deliver(*segment, packet, now);
         break;
     case protocols::kIcmp:
-        if (const auto message = protocols::decode_icmp(packet)) return unreachable(*message);
+        if (const auto message = protocols::decode_icmp(packet)) return take_in(*message, packet, now);
         break;
     default:
         return;
@@ -170,10 +174,12 @@ Time NetworkStack::next_event() const {
     return next;
 }
 
-Socket& NetworkStack::add(bool stream) {
+Socket& NetworkStack::add(SocketKind kind) {
+    const bool stream = kind == SocketKind::Stream;
     auto socket = std::make_unique<Socket>();
     socket->id = next_id_++;
     socket->stream = stream;
+    socket->echo = kind == SocketKind::Echo;
     if (stream) {
         socket->options.send_buffer = 131'072;
         socket->options.receive_buffer = 131'072;
@@ -181,9 +187,9 @@ Socket& NetworkStack::add(bool stream) {
     return *(sockets_[socket->id] = std::move(socket));
 }
 
-int NetworkStack::open(bool stream) {
+int NetworkStack::open(SocketKind kind) {
     used_ = true;
-    return add(stream).id;
+    return add(kind).id;
 }
 
 void NetworkStack::close(int id, Time now) {
@@ -218,14 +224,16 @@ void NetworkStack::forget_closed() {
 }
 
 int NetworkStack::send(int id, std::optional<Endpoint> to, std::string_view data, std::size_t& taken,
-                       Time now) {
+                       Time now, bool more) {
     Socket& socket = at(id);
     taken = 0;
-    if (socket.stream) return send_stream(socket, data, taken, now);
+    if (socket.stream) return send_stream(socket, data, taken, now, more);
     if (const int error = std::exchange(socket.error, 0)) return error;
     if (socket.write_shut) return EPIPE;
     if (!to && !socket.connected) return EDESTADDRREQ;
-    const int error = send_datagram(socket, to ? *to : socket.peer, data, now);
+    const Endpoint receiver = to ? *to : socket.peer;
+    const int error =
+        socket.echo ? send_echo(socket, receiver, data, now) : send_datagram(socket, receiver, data, now);
     if (error == 0) taken = data.size();
     return error;
 }
@@ -238,14 +246,20 @@ int NetworkStack::receive(int id, std::size_t most, bool peek, Received& receive
         Socket::Datagram& first = socket.queue.front();
         received.from = first.from;
         received.size = first.data.size();
+        received.time = first.time;
+        received.to = first.to;
+        received.time_to_live = first.time_to_live;
+        received.service = first.service;
         received.data = first.data.substr(0, most);
         if (peek) return 0;
         socket.queued -= first.data.size() + Socket::kDatagramCost;
         socket.queue.pop_front();
         return 0;
     }
+    if (!socket.tcp && socket.read_shut) return 0;
     if (socket.listening || !socket.tcp) return ENOTCONN;
-    if (socket.tcp->readable() > 0 && !socket.read_shut) {
+    // What came is read also after shutdown(SHUT_RD).
+    if (socket.tcp->readable() > 0) {
         received.data = socket.tcp->read(most, peek, now);
         received.size = received.data.size();
         received.from = socket.tcp->peer();
@@ -253,7 +267,7 @@ int NetworkStack::receive(int id, std::size_t most, bool peek, Received& receive
         return 0;
     }
     if (const int error = take_error(socket)) return error;
-    if (socket.tcp->state() == TcpConnection::State::SynSent) return EAGAIN;
+    if (is_opening(*socket.tcp)) return EAGAIN;
     return socket.tcp->at_end() || socket.read_shut ? 0 : EAGAIN;
 }
 
@@ -267,12 +281,13 @@ int NetworkStack::shutdown(int id, int how, Time now) {
         }
         return 0;
     }
-    if (socket.stream ? !socket.tcp || socket.tcp->state() == TcpConnection::State::Closed
-                      : !socket.connected)
-        return ENOTCONN;
     if (how != SHUT_WR) socket.read_shut = true;
     if (how != SHUT_RD) socket.write_shut = true;
     ++socket.activity;
+    // It is shut all the same, as in Linux.
+    if (socket.stream ? !socket.tcp || socket.tcp->state() == TcpConnection::State::Closed
+                      : !socket.connected)
+        return ENOTCONN;
     if (!socket.stream) return 0;
     if (how != SHUT_WR) socket.tcp->shut_read(now);
     if (how != SHUT_RD) socket.tcp->shut_write(now);
@@ -298,15 +313,16 @@ int NetworkStack::events(int id) const {
         if (!socket.queue.empty() || socket.read_shut) events |= POLLIN | POLLRDNORM;
         if (socket.read_shut) events |= POLLRDHUP;
         if (socket.read_shut && socket.write_shut) events |= POLLHUP;
-        if (socket.error != 0) events |= POLLERR | POLLIN | POLLRDNORM;
+        if (socket.error != 0) events |= POLLERR;
         return events | POLLOUT | POLLWRNORM;
     }
     if (socket.listening) return socket.ready.empty() ? 0 : POLLIN | POLLRDNORM;
     if (!socket.tcp) return POLLOUT | POLLWRNORM | POLLHUP;
     const TcpConnection& tcp = *socket.tcp;
     const bool over = tcp.state() == TcpConnection::State::Closed;
-    if (tcp.state() == TcpConnection::State::SynSent) return 0;
-    if (tcp.readable() > 0 || tcp.peer_done() || over) events |= POLLIN | POLLRDNORM;
+    if (is_opening(tcp)) return 0;
+    const auto enough = static_cast<std::size_t>(socket.options.low_water);
+    if (tcp.readable() >= enough || tcp.peer_done() || over) events |= POLLIN | POLLRDNORM;
     if (tcp.peer_done() || over) events |= POLLRDHUP;
     if (over || (tcp.peer_done() && tcp.write_done())) events |= POLLHUP;
     if (tcp.error() != 0 || socket.error != 0) events |= POLLERR;

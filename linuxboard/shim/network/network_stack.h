@@ -9,12 +9,14 @@
 
 #include "base/random.h"
 #include "cosim/core/message.h"
+#include "linuxboard/shim/network/name_server.h"
 #include "linuxboard/shim/network/network_spec.h"
 #include "linuxboard/shim/network/socket.h"
 
 #include <cerrno>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,7 +50,8 @@ class NetworkStack {
     NetworkStack(const NetworkSpec& spec, RandomStream random);
 
     // Calls: 0, or errno. Sockets have numbers; each call names one that is open.
-    int open(bool stream);
+    int open(SocketKind kind);
+    int open(bool stream) { return open(stream ? SocketKind::Stream : SocketKind::Datagram); }
     void close(int id, cosim::Time now);
     int bind(int id, Endpoint to);
     /// EINPROGRESS: begun; connecting() says what came of it.
@@ -61,7 +64,8 @@ class NetworkStack {
     int accept(int id);
     bool listening(int id) const { return at(id).listening; }
     /// `taken`: octets; EAGAIN: none for now.
-    int send(int id, std::optional<Endpoint> to, std::string_view data, std::size_t& taken, cosim::Time now);
+    int send(int id, std::optional<Endpoint> to, std::string_view data, std::size_t& taken, cosim::Time now,
+             bool more = false);
     /// The next call that takes one fails with it.
     void keep_error(int id, int error) {
         if (error != EPIPE) at(id).error = error;
@@ -70,6 +74,10 @@ class NetworkStack {
         std::string data;
         Endpoint from{};
         std::size_t size = 0;  ///< of the datagram
+        // Of a datagram.
+        cosim::Time time = 0;
+        protocols::IpAddress to = 0;
+        protocols::Octet time_to_live = 0, service = 0;
     };
     /// EAGAIN: nothing is there. At the end of a stream the data is empty.
     int receive(int id, std::size_t most, bool peek, Received& received, cosim::Time now);
@@ -96,13 +104,19 @@ class NetworkStack {
     /// JSON: addresses, counters, TCP's sums.
     std::string report() const;
     const NetworkCounts& counts() const { return counts_; }
+    /// Asked for each question to the board's resolver; true: it gets no answer.
+    void set_silence(std::function<bool(cosim::Time now, std::string_view name)> silence) {
+        silence_ = std::move(silence);
+    }
+    /// Names that the resolver was asked for and nobody has.
+    const std::set<std::string>& unknown_names() const { return unknown_names_; }
 
   private:
     using IpPacket = protocols::IpPacket;
 
     Socket& at(int id) { return *sockets_.at(id); }
     const Socket& at(int id) const { return *sockets_.at(id); }
-    Socket& add(bool stream);
+    Socket& add(SocketKind kind);
     void forget_closed();
 
     // network_stack.cpp: packets
@@ -121,15 +135,22 @@ class NetworkStack {
     // stack_ports.cpp
     bool is_taken(const Socket& socket, Endpoint endpoint) const;
     int bind_somewhere(Socket& socket, protocols::IpAddress address);
+    bool leaves_loopback(const Socket& socket, protocols::IpAddress to) const;
+    static std::size_t share_of(Endpoint here, Endpoint there, std::size_t count);
 
     // stack_datagrams.cpp
     int send_datagram(Socket& socket, Endpoint to, std::string_view data, cosim::Time now);
     void deliver(const protocols::UdpDatagram& datagram, const IpPacket& packet, cosim::Time now);
-    static void put(Socket& socket, Endpoint from, const std::string& data, NetworkCounts& counts);
+    static void put(Socket& socket, Socket::Datagram datagram, NetworkCounts& counts);
     void unreachable(const protocols::IcmpMessage& message);
+    void answer_question(const protocols::UdpDatagram& question, protocols::IpAddress from, cosim::Time now);
+
+    // stack_echoes.cpp
+    int send_echo(Socket& socket, Endpoint to, std::string_view data, cosim::Time now);
+    void take_in(const protocols::IcmpMessage& message, const IpPacket& packet, cosim::Time now);
 
     // stack_streams.cpp
-    int send_stream(Socket& socket, std::string_view data, std::size_t& taken, cosim::Time now);
+    int send_stream(Socket& socket, std::string_view data, std::size_t& taken, cosim::Time now, bool more);
     void deliver(const protocols::TcpSegment& segment, const IpPacket& packet, cosim::Time now);
     void arrived(Socket& socket, const protocols::TcpSegment& segment, cosim::Time now);
     void opened_by(Socket& listener, const protocols::TcpSegment& syn, const IpPacket& packet,
@@ -138,6 +159,9 @@ class NetworkStack {
     void flush(Socket& socket, cosim::Time now);
     void close_stream(Socket& socket, cosim::Time now);
     static int take_error(Socket& socket);
+    /// Of the options, what concerns how long a connection waits for its peer.
+    static void set_patience(TcpConnection::Settings& settings, const SocketOptions& options);
+    static void watch_peer(Socket& socket, cosim::Time now);
 
     struct Looped {
         cosim::Time time = 0;
@@ -151,6 +175,9 @@ class NetworkStack {
 
     NetworkPlace place_;
     std::set<protocols::IpAddress> known_;
+    NameServer names_;
+    std::function<bool(cosim::Time, std::string_view)> silence_;
+    std::set<std::string> unknown_names_;
     RandomStream random_;
     std::map<int, std::unique_ptr<Socket>> sockets_;
     int next_id_ = 0;
@@ -166,6 +193,6 @@ class NetworkStack {
 
 inline constexpr protocols::IpAddress kLocalHost = 0x7f000001;
 /// A packet from the board to itself arrives so much later.
-inline constexpr cosim::Time kLoopback = 10 * cosim::kMicrosecond;
+inline constexpr cosim::Time kLoopback = cosim::kMicrosecond;
 
 }  // namespace puckloop::linuxboard

@@ -23,9 +23,22 @@ struct SocketOptions {
     int time_to_live = 64, service = 0, priority = 0;
     int group_time_to_live = 1;
     bool group_loop = true;
-    int user_timeout = 0, defer_accept = 0, low_water = 1;
+    int user_timeout = 0;  ///< ms
+    int syn_count = 6, defer_accept = 0, low_water = 1;
     bool quick_acknowledgement = true, cork = false;
+    bool all_groups = true;  ///< IP_MULTICAST_ALL
+    // What recvmsg() gives beside a datagram: IP_PKTINFO, IP_RECVTTL, IP_RECVTOS, SO_TIMESTAMP, ..NS.
+    bool packet_info = false, with_time_to_live = false, with_service = false;
+    bool time_stamp = false, fine_time_stamp = false;
+    // Stored and read back, without effect.
+    bool direct = false, oob_inline = false, overflow = false, no_check = false, free_bind = false,
+         late_port = false, receive_errors = false;
+    int path_mtu_discovery = 1, linger_finished = 60, window_clamp = 0, fast_open = 0, unsent_low_water = 0;
+    int most_segment = 0;  ///< TCP_MAXSEG; 0: by the interface
+    std::string device{};  ///< SO_BINDTODEVICE
 };
+
+enum class SocketKind : std::uint8_t { Datagram, Stream, Echo };
 
 struct Socket {
     /// What a datagram takes of the buffer beside its data, as of Linux (sk_buff).
@@ -33,11 +46,15 @@ struct Socket {
     struct Datagram {
         Endpoint from;
         std::string data;
+        cosim::Time time = 0;
+        protocols::IpAddress to = 0;
+        protocols::Octet time_to_live = 0, service = 0;
     };
 
     int id = 0;
     bool stream = false;
-    bool open = true;  ///< a program has it
+    bool echo = false;  ///< of ICMP echoes: SOCK_DGRAM with IPPROTO_ICMP; the port is the identifier
+    bool open = true;   ///< a program has it
     Endpoint local{}, peer{};
     bool bound = false, connected = false;
     bool read_shut = false, write_shut = false;

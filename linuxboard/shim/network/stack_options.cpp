@@ -47,6 +47,18 @@ bool* flag_of(SocketOptions& options, int level, int name) {
             return &options.broadcast;
         case SO_KEEPALIVE:
             return &options.keep_alive;
+        case SO_DONTROUTE:
+            return &options.direct;
+        case SO_OOBINLINE:
+            return &options.oob_inline;
+        case SO_TIMESTAMP:
+            return &options.time_stamp;
+        case SO_TIMESTAMPNS:
+            return &options.fine_time_stamp;
+        case SO_RXQ_OVFL:
+            return &options.overflow;
+        case SO_NO_CHECK:
+            return &options.no_check;
         default:
             return nullptr;
         }
@@ -54,8 +66,27 @@ bool* flag_of(SocketOptions& options, int level, int name) {
     if (level == IPPROTO_TCP && name == TCP_NODELAY) return &options.no_delay;
     if (level == IPPROTO_TCP && name == TCP_QUICKACK) return &options.quick_acknowledgement;
     if (level == IPPROTO_TCP && name == TCP_CORK) return &options.cork;
-    if (level == IPPROTO_IP && name == IP_MULTICAST_LOOP) return &options.group_loop;
-    return nullptr;
+    if (level != IPPROTO_IP) return nullptr;
+    switch (name) {
+    case IP_MULTICAST_LOOP:
+        return &options.group_loop;
+    case IP_MULTICAST_ALL:
+        return &options.all_groups;
+    case IP_PKTINFO:
+        return &options.packet_info;
+    case IP_RECVTTL:
+        return &options.with_time_to_live;
+    case IP_RECVTOS:
+        return &options.with_service;
+    case IP_RECVERR:
+        return &options.receive_errors;
+    case IP_FREEBIND:
+        return &options.free_bind;
+    case IP_BIND_ADDRESS_NO_PORT:
+        return &options.late_port;
+    default:
+        return nullptr;
+    }
 }
 
 /// Numbers that are stored and read back, with their range.
@@ -70,6 +101,7 @@ Number number_of(SocketOptions& options, int level, int name) {
         if (name == IP_TTL) return {&options.time_to_live, 1, 255};
         if (name == IP_TOS) return {&options.service, 0, 255};
         if (name == IP_MULTICAST_TTL) return {&options.group_time_to_live, 0, 255};
+        if (name == IP_MTU_DISCOVER) return {&options.path_mtu_discovery, 0, 5};
         return {};
     }
     if (level != IPPROTO_TCP) return {};
@@ -84,6 +116,16 @@ Number number_of(SocketOptions& options, int level, int name) {
         return {&options.user_timeout};
     case TCP_DEFER_ACCEPT:
         return {&options.defer_accept};
+    case TCP_SYNCNT:
+        return {&options.syn_count, 1, 127};
+    case TCP_LINGER2:
+        return {&options.linger_finished, INT32_MIN};
+    case TCP_WINDOW_CLAMP:
+        return {&options.window_clamp};
+    case TCP_FASTOPEN:
+        return {&options.fast_open};
+    case TCP_NOTSENT_LOWAT:
+        return {&options.unsent_low_water, INT32_MIN};
     default:
         return {};
     }
@@ -135,6 +177,12 @@ timeval as_timeval(Time time) {
 
 }  // namespace
 
+void NetworkStack::watch_peer(Socket& socket, Time now) {
+    if (!socket.tcp) return;
+    set_patience(socket.tcp->settings(), socket.options);
+    socket.tcp->watch_peer(now);
+}
+
 int NetworkStack::set_option(int id, int level, int name, std::string_view value, Time now) {
     Socket& socket = at(id);
     SocketOptions& options = socket.options;
@@ -151,6 +199,14 @@ int NetworkStack::set_option(int id, int level, int name, std::string_view value
         if (name == IP_ADD_MEMBERSHIP) return socket.groups.insert(group).second ? 0 : EADDRINUSE;
         return socket.groups.erase(group) != 0 ? 0 : EADDRNOTAVAIL;
     }
+    if (level == SOL_SOCKET && name == SO_BINDTODEVICE) {
+        const std::string device(value.substr(0, value.find('\0')));
+        if (!device.empty() && device != "lo" && device != "wlan0") return ENODEV;
+        options.device = device;
+        return 0;
+    }
+    if (level == IPPROTO_TCP && name == TCP_CONGESTION)
+        return value.substr(0, value.find('\0')) == "reno" ? 0 : ENOENT;
     if (level == IPPROTO_IP && name == IP_MULTICAST_IF) {
         in_addr address{};
         if (value.size() >= sizeof(ip_mreqn)) {
@@ -193,13 +249,31 @@ int NetworkStack::set_option(int id, int level, int name, std::string_view value
             socket.tcp->set_no_delay(*flag, now);
             flush(socket, now);
         }
+        if (flag == &options.cork && socket.tcp) {
+            socket.tcp->set_cork(*flag, now);
+            flush(socket, now);
+        }
+        if (flag == &options.keep_alive) watch_peer(socket, now);
         return 0;
     }
     if (level == IPPROTO_IP && name == IP_TTL && number == -1) number = 64;
+    if (level == IPPROTO_IP && (name == IP_RECVOPTS || name == IP_RETOPTS)) return 0;  // there are none
+    if (level == SOL_SOCKET && (name == SO_MARK || name == SO_SNDBUFFORCE || name == SO_RCVBUFFORCE))
+        return EPERM;  // as for a user without rights
+    if (level == IPPROTO_TCP && name == TCP_MAXSEG) {
+        constexpr int kLeast = 88, kMost = 32'767;  // TCP_MIN_MSS, MAX_TCP_WINDOW
+        if (number != 0 && (number < kLeast || number > kMost)) return EINVAL;
+        options.most_segment = number;
+        return 0;
+    }
     const Number stored = number_of(options, level, name);
     if (stored.value == nullptr) return ENOPROTOOPT;
-    if (number < stored.low || number > stored.high) return EINVAL;
+    if (number < stored.low || number > stored.high)
+        return name == SO_PRIORITY && level == SOL_SOCKET ? EPERM : EINVAL;
+    if (level == IPPROTO_TCP && name == TCP_WINDOW_CLAMP && number != 0)
+        number = std::max(number, kSmallestReceive / 2);
     *stored.value = number;
+    if (level == IPPROTO_TCP) watch_peer(socket, now);
     return 0;
 }
 
@@ -214,10 +288,26 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
     if (const bool* flag = flag_of(options, level, name)) return give(int{*flag ? 1 : 0});
     if (const Number stored = number_of(options, level, name); stored.value != nullptr)
         return give(*stored.value);
-    if (level == IPPROTO_TCP && name == TCP_MAXSEG) return give(static_cast<int>(TcpConnection::kSegment));
+    if (level == IPPROTO_TCP && name == TCP_MAXSEG) {
+        constexpr int kBefore = 536;  // TCP_MSS_DEFAULT
+        if (socket.tcp) return give(static_cast<int>(socket.tcp->figures().segment));
+        return give(options.most_segment != 0 ? options.most_segment : kBefore);
+    }
     if (level == IPPROTO_TCP && name == TCP_INFO) return give(socket.tcp ? info_of(*socket.tcp) : tcp_info{});
     if (level == IPPROTO_TCP && name == TCP_CONGESTION) {
-        value = std::string("reno\0", 5);
+        constexpr std::size_t kLongestName = 16;  // TCP_CA_NAME_MAX
+        value = "reno";
+        value.resize(kLongestName);
+        return 0;
+    }
+    if (level == IPPROTO_IP && name == IP_MULTICAST_IF) return give(in_addr{});
+    if (level == IPPROTO_IP && name == IP_MTU) {
+        if (!socket.connected && !socket.tcp) return ENOTCONN;
+        return give(static_cast<int>(protocols::kMtu));
+    }
+    if (level == SOL_SOCKET && name == SO_BINDTODEVICE) {
+        value = options.device;
+        if (!value.empty()) value += '\0';
         return 0;
     }
     if (level != SOL_SOCKET) return ENOPROTOOPT;
@@ -229,7 +319,7 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
     case SO_DOMAIN:
         return give(int{AF_INET});
     case SO_PROTOCOL:
-        return give(int{socket.stream ? IPPROTO_TCP : IPPROTO_UDP});
+        return give(int{socket.stream ? IPPROTO_TCP : socket.echo ? IPPROTO_ICMP : IPPROTO_UDP});
     case SO_ACCEPTCONN:
         return give(int{socket.listening ? 1 : 0});
     case SO_RCVBUF:
@@ -238,6 +328,11 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
         return give(options.send_buffer);
     case SO_SNDLOWAT:
         return give(int{1});
+    case SO_INCOMING_CPU:
+        return give(int{-1});  // not known
+    case SO_MARK:
+    case SO_BUSY_POLL:
+        return give(int{0});
     case SO_LINGER:
         return give(::linger{options.linger ? 1 : 0, options.linger_s});
     case SO_RCVTIMEO:

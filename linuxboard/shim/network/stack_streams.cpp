@@ -23,9 +23,24 @@ constexpr int kShareOfData = 2;
 TcpConnection::Settings settings_of(const SocketOptions& options) {
     constexpr std::size_t kWidest = 65'535;
     const auto half = [](int size) { return static_cast<std::size_t>(std::max(size / kShareOfData, 1)); };
-    return {half(options.send_buffer), std::min(half(options.receive_buffer), kWidest), options.no_delay};
+    return {.send_buffer = half(options.send_buffer),
+            .receive_buffer = std::min(half(options.receive_buffer), kWidest),
+            .no_delay = options.no_delay,
+            .cork = options.cork};
 }
 }  // namespace
+
+void NetworkStack::set_patience(TcpConnection::Settings& settings, const SocketOptions& options) {
+    settings.keep_alive = options.keep_alive;
+    settings.keep_idle = options.keep_idle * cosim::kSecond;
+    settings.keep_interval = options.keep_interval * cosim::kSecond;
+    settings.keep_count = options.keep_count;
+    settings.user_timeout = options.user_timeout * cosim::kMillisecond;
+    settings.syn_attempts = options.syn_count;
+    if (options.most_segment != 0)
+        settings.most_segment =
+            std::min<std::size_t>(static_cast<std::size_t>(options.most_segment), TcpConnection::kSegment);
+}
 
 int NetworkStack::connect(int id, Endpoint to, Time now) {
     Socket& socket = at(id);
@@ -33,6 +48,7 @@ int NetworkStack::connect(int id, Endpoint to, Time now) {
     if (!socket.stream) {
         if (is_broadcast(to.address) && !socket.options.broadcast) return EACCES;
         const IpAddress source = source_for(to.address);
+        if (leaves_loopback(socket, to.address)) return EINVAL;
         if (source == 0) return ENETUNREACH;
         if (!socket.bound)
             if (const int error = bind_somewhere(socket, 0)) return error;
@@ -45,9 +61,12 @@ int NetworkStack::connect(int id, Endpoint to, Time now) {
     if (socket.tcp) {
         switch (socket.tcp->state()) {
         case TcpConnection::State::SynSent:
+        case TcpConnection::State::SynReceived:
             return EALREADY;
         case TcpConnection::State::Closed:
             if (const int error = take_error(socket)) return error;
+            // The error was asked for by SO_ERROR; Linux' connect() has its own for the end of the attempt.
+            if (std::exchange(socket.connecting, false)) return ECONNABORTED;
             socket.tcp.reset();  // it may try again
             break;
         default:
@@ -56,6 +75,7 @@ int NetworkStack::connect(int id, Endpoint to, Time now) {
     }
     if (is_for_many(to.address)) return ENETUNREACH;
     const IpAddress source = source_for(to.address);
+    if (leaves_loopback(socket, to.address)) return EINVAL;
     if (source == 0) return ENETUNREACH;
     if (to.port == 0) return ECONNREFUSED;
     if (!socket.bound)
@@ -69,6 +89,7 @@ int NetworkStack::connect(int id, Endpoint to, Time now) {
     if (same) return EADDRNOTAVAIL;
     socket.tcp = std::make_unique<TcpConnection>(
         socket.local, to, static_cast<std::uint32_t>(random_.next() >> 32), settings_of(socket.options));
+    set_patience(socket.tcp->settings(), socket.options);
     ++counts_.connections;
     socket.connecting = true;
     socket.tcp->connect(now);
@@ -87,9 +108,10 @@ void NetworkStack::disconnect(int id) {
 int NetworkStack::connecting(int id) {
     Socket& socket = at(id);
     if (!socket.tcp) return ENOTCONN;
-    if (socket.tcp->state() == TcpConnection::State::SynSent) return EINPROGRESS;
+    const bool closed = socket.tcp->state() == TcpConnection::State::Closed;
+    if (!closed && !socket.tcp->synchronised()) return EINPROGRESS;
     socket.connecting = false;
-    if (socket.tcp->state() != TcpConnection::State::Closed) return 0;
+    if (!closed) return 0;
     const int error = take_error(socket);
     return error != 0 ? error : ECONNABORTED;
 }
@@ -130,13 +152,15 @@ int NetworkStack::take_error(Socket& socket) {
     return socket.tcp ? socket.tcp->take_error() : 0;
 }
 
-int NetworkStack::send_stream(Socket& socket, std::string_view data, std::size_t& taken, Time now) {
+int NetworkStack::send_stream(Socket& socket, std::string_view data, std::size_t& taken, Time now,
+                              bool more) {
     if (!socket.tcp || socket.listening) return EPIPE;
-    if (socket.tcp->state() == TcpConnection::State::SynSent) return EAGAIN;
+    const bool closed = socket.tcp->state() == TcpConnection::State::Closed;
+    if (!closed && !socket.tcp->synchronised()) return EAGAIN;
     if (const int error = take_error(socket)) return error;
     if (socket.write_shut || socket.tcp->write_done() || socket.tcp->state() == TcpConnection::State::Closed)
         return EPIPE;
-    taken = socket.tcp->write(data, now);
+    taken = socket.tcp->write(data, now, more);
     flush(socket, now);
     return taken == 0 && !data.empty() ? EAGAIN : 0;
 }
@@ -148,6 +172,7 @@ void NetworkStack::flush(Socket& socket, Time now) {
         packet.from = socket.tcp->local().address;
         packet.to = socket.tcp->peer().address;
         packet.protocol = protocols::kTcp;
+        packet.service = static_cast<protocols::Octet>(socket.options.service);
         packet.ttl = static_cast<std::uint8_t>(std::max(socket.options.time_to_live, 1));
         packet.payload = protocols::encode_tcp(segment, packet.from, packet.to);
         emit(std::move(packet), now);
@@ -156,8 +181,8 @@ void NetworkStack::flush(Socket& socket, Time now) {
 
 void NetworkStack::deliver(const TcpSegment& segment, const IpPacket& packet, Time now) {
     const Endpoint here{packet.to, segment.to_port}, there{packet.from, segment.from_port};
-    Socket* listener = nullptr;
-    Socket* waiting = nullptr;  // in TimeWait
+    std::vector<Socket*> listeners;  // of the address, or if there is none of any
+    Socket* waiting = nullptr;       // in TimeWait
     for (const auto& [id, socket] : sockets_) {
         const TcpConnection* tcp = socket->tcp.get();
         if (tcp != nullptr && tcp->local() == here && tcp->peer() == there &&
@@ -169,13 +194,17 @@ void NetworkStack::deliver(const TcpSegment& segment, const IpPacket& packet, Ti
         }
         const bool hears = socket->listening && socket->local.port == here.port &&
                            (socket->local.address == 0 || socket->local.address == here.address);
-        if (hears && (listener == nullptr || socket->local.address != 0)) listener = socket.get();
+        if (!hears) continue;
+        if (!listeners.empty() && socket->local.address != listeners.front()->local.address) {
+            if (socket->local.address == 0) continue;
+            listeners.clear();
+        }
+        listeners.push_back(socket.get());
     }
     constexpr auto kKinds = protocols::kSyn | protocols::kAck | protocols::kRst;
-    if (listener == nullptr || (segment.flags & kKinds) != protocols::kSyn)
-        return refuse(segment, packet, now);
+    if (listeners.empty() || (segment.flags & kKinds) != protocols::kSyn) return refuse(segment, packet, now);
     if (waiting != nullptr) waiting->tcp->fail(0);
-    opened_by(*listener, segment, packet, now);
+    opened_by(*listeners[share_of(here, there, listeners.size())], segment, packet, now);
 }
 
 void NetworkStack::arrived(Socket& socket, const TcpSegment& segment, Time now) {
@@ -203,7 +232,7 @@ void NetworkStack::opened_by(Socket& listener, const TcpSegment& syn, const IpPa
         return other.second->listener == listener.id;
     });
     if (static_cast<std::size_t>(waiting) > listener.backlog) return;
-    Socket& socket = add(true);
+    Socket& socket = add(SocketKind::Stream);
     socket.open = false;
     socket.listener = listener.id;
     socket.options = listener.options;
@@ -212,6 +241,7 @@ void NetworkStack::opened_by(Socket& listener, const TcpSegment& syn, const IpPa
     socket.tcp = std::make_unique<TcpConnection>(socket.local, Endpoint{packet.from, syn.from_port},
                                                  static_cast<std::uint32_t>(random_.next() >> 32),
                                                  settings_of(socket.options));
+    set_patience(socket.tcp->settings(), socket.options);
     ++counts_.connections;
     socket.tcp->answer(syn, now);
     flush(socket, now);

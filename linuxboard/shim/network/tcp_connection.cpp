@@ -42,12 +42,13 @@ void TcpConnection::enter(State state, Time now) {
     stir();
     if (state == State::TimeWait || (state == State::FinWait2 && orphan_)) leave_at_ = now + kLinger;
     if (state == State::TimeWait) retransmit_at_ = probe_at_ = acknowledge_at_ = kNever;
+    watch_peer(now);
 }
 
 void TcpConnection::end(int error) {
     state_ = State::Closed;
     if (error != 0) error_ = error;
-    retransmit_at_ = probe_at_ = acknowledge_at_ = leave_at_ = kNever;
+    retransmit_at_ = probe_at_ = acknowledge_at_ = leave_at_ = keep_at_ = uncork_at_ = kNever;
     acknowledge_now_ = false;
     stir();
 }
@@ -59,7 +60,8 @@ void TcpConnection::fail(int error) {
 void TcpConnection::connect(Time now) {
     state_ = State::SynSent;
     send_syn(false);
-    retransmit_at_ = now + timeout_;
+    progress_at_ = now;
+    await_acknowledgement(now);
     timing_ = true;
     timed_ = next_;
     timed_at_ = now;
@@ -69,11 +71,12 @@ void TcpConnection::answer(const Segment& syn, Time now) {
     state_ = State::SynReceived;
     peer_first_ = syn.sequence;
     expected_ = advertised_ = syn.sequence + 1;
-    if (syn.most != 0) segment_ = std::min<std::size_t>(syn.most, kSegment);
+    if (syn.most != 0) segment_ = std::min<std::size_t>(syn.most, settings_.most_segment);
     peer_window_ = widest_window_ = syn.window;
     window_sequence_ = syn.sequence;
     send_syn(true);
-    retransmit_at_ = now + timeout_;
+    heard_at_ = progress_at_ = now;
+    await_acknowledgement(now);
     timing_ = true;
     timed_ = next_;
     timed_at_ = now;
@@ -111,10 +114,14 @@ void TcpConnection::receive_in_syn_sent(const Segment& segment, Time now) {
         if (acknowledges) end(ECONNREFUSED);
         return;
     }
-    if ((segment.flags & kSyn) == 0 || !acknowledges) return;
+    if ((segment.flags & kSyn) == 0) return;
+    if (!acknowledges) {  // both ends open at once, or it is the same one
+        timing_ = false;
+        return answer(segment, now);
+    }
     peer_first_ = segment.sequence;
     expected_ = advertised_ = segment.sequence + 1;
-    if (segment.most != 0) segment_ = std::min<std::size_t>(segment.most, kSegment);
+    if (segment.most != 0) segment_ = std::min<std::size_t>(segment.most, settings_.most_segment);
     peer_window_ = widest_window_ = segment.window;
     window_sequence_ = segment.sequence;
     window_acknowledged_ = segment.acknowledged;
@@ -127,7 +134,17 @@ void TcpConnection::receive_in_syn_sent(const Segment& segment, Time now) {
 void TcpConnection::receive(const Segment& segment, Time now) {
     ++counts_.received;
     if (state_ == State::Closed) return;
+    heard_at_ = now;
+    keep_probes_ = unanswered_probes_ = 0;
     if (state_ == State::SynSent) return receive_in_syn_sent(segment, now);
+    const bool opened_at_once = state_ == State::SynReceived && segment.sequence == peer_first_ &&
+                                segment.flags == (kSyn | kAck) && segment.acknowledged == next_;
+    if (opened_at_once) {
+        enter(State::Established, now);
+        receive_acknowledgement(segment, now);
+        acknowledge_now_ = true;
+        return send(now);
+    }
     if (!acceptable(segment)) {
         if ((segment.flags & kRst) != 0) return;
         // The SYN+ACK, or what came before, was lost or is repeated.
@@ -286,12 +303,43 @@ void TcpConnection::advance(Time now) {
         acknowledge_now_ = true;
         send(now);
     }
+    if (uncork_at_ <= now) {
+        send(now);
+        uncork_at_ = kNever;
+    }
     if (retransmit_at_ <= now) timed_out(now);
     if (probe_at_ <= now) probe(now);
+    if (keep_at_ <= now) check_peer(now);
+}
+
+void TcpConnection::watch_peer(Time now) {
+    const bool watched = settings_.keep_alive && synchronised() && state_ != State::TimeWait && !orphan_;
+    keep_at_ = watched ? std::max(now, heard_at_ + settings_.keep_idle) : kNever;
+}
+
+/// Keep-alive (RFC 1122, 4.2.3.6), as tcp_keepalive_timer(): what is on its way to the peer asks it as well.
+void TcpConnection::check_peer(Time now) {
+    if (orphan_) keep_at_ = kNever;
+    if (keep_at_ == kNever) return;
+    if (flight() > 0 || unsent() > 0) {
+        keep_at_ = now + settings_.keep_idle;
+        return;
+    }
+    const Time silent = now - heard_at_;
+    if (silent < settings_.keep_idle) return watch_peer(now);
+    const bool over = settings_.user_timeout > 0 ? keep_probes_ > 0 && silent >= settings_.user_timeout
+                                                 : keep_probes_ >= settings_.keep_count;
+    if (over) {
+        reset_peer(next_);
+        return end(ETIMEDOUT);
+    }
+    ++keep_probes_;
+    ask_peer();
+    keep_at_ = now + settings_.keep_interval;
 }
 
 Time TcpConnection::next_event() const {
-    return std::min({leave_at_, acknowledge_at_, retransmit_at_, probe_at_});
+    return std::min({leave_at_, acknowledge_at_, retransmit_at_, probe_at_, keep_at_, uncork_at_});
 }
 
 }  // namespace puckloop::linuxboard

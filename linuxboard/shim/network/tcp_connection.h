@@ -5,8 +5,7 @@
 // (include/net/tcp.h).
 //
 // Deviations: 1. No window scaling, time stamps, selective acknowledgements or ECN: a window is at most
-// 65,535 octets. 2. Keep-alive probes are not sent. 3. No urgent data. 4. Both ends opening at once is
-// refused.
+// 65,535 octets. 2. No urgent data.
 
 #include "cosim/core/time.h"
 #include "protocols/ip_packet.h"
@@ -60,21 +59,27 @@ class TcpConnection {
         LastAck,
         TimeWait
     };
+    static constexpr std::size_t kSegment = protocols::kMtu - protocols::kIpHeader - protocols::kTcpHeader;
     struct Settings {
         std::size_t send_buffer = 65'536;     ///< octets that wait or are on their way
         std::size_t receive_buffer = 65'535;  ///< 1 to 65,535
         bool no_delay = false;                ///< TCP_NODELAY
+        bool cork = false;                    ///< TCP_CORK
+        bool keep_alive = false;              ///< SO_KEEPALIVE
+        cosim::Time keep_idle = 7200 * cosim::kSecond, keep_interval = 75 * cosim::kSecond;
+        int keep_count = 9;                   ///< probes without an answer
+        cosim::Time user_timeout = 0;         ///< of what is sent and not acknowledged; 0: by repetitions
+        int syn_attempts = 6;                 ///< tcp_syn_retries
+        std::size_t most_segment = kSegment;  ///< TCP_MAXSEG
     };
-    static constexpr std::size_t kSegment = protocols::kMtu - protocols::kIpHeader - protocols::kTcpHeader;
-
     TcpConnection(Endpoint local, Endpoint peer, std::uint32_t first_sequence, const Settings& settings);
 
     void connect(cosim::Time now);
     /// The other side's SYN.
     void answer(const protocols::TcpSegment& syn, cosim::Time now);
     void receive(const protocols::TcpSegment& segment, cosim::Time now);
-    /// Octets taken, as many as there is room for.
-    std::size_t write(std::string_view data, cosim::Time now);
+    /// Octets taken, as many as there is room for. `more` follows soon (MSG_MORE).
+    std::size_t write(std::string_view data, cosim::Time now, bool more = false);
     std::string read(std::size_t most, bool peek, cosim::Time now);
     void shut_write(cosim::Time now);
     void shut_read(cosim::Time now);
@@ -85,7 +90,10 @@ class TcpConnection {
     /// It is over, by an error that came from elsewhere.
     void fail(int error);
     void set_no_delay(bool on, cosim::Time now);
+    void set_cork(bool on, cosim::Time now);
     Settings& settings() { return settings_; }
+    /// Keep-alive was switched on or off, or its times were changed.
+    void watch_peer(cosim::Time now);
 
     /// Timers due up to and including `now`.
     void advance(cosim::Time now);
@@ -135,6 +143,7 @@ class TcpConnection {
     void receive_data(Segment segment, cosim::Time now);
     void receive_fin(cosim::Time now);
     void stir() { ++activity_; }
+    void check_peer(cosim::Time now);
 
     // tcp_sending.cpp
     std::uint32_t data_end() const { return data_begin_ + static_cast<std::uint32_t>(out_data_.size()); }
@@ -152,8 +161,11 @@ class TcpConnection {
     void send_acknowledgement();
     Segment bare() const;
     std::uint16_t window();
+    void await_acknowledgement(cosim::Time now);
+    bool outlasted(cosim::Time since, cosim::Time now) const;
     void timed_out(cosim::Time now);
     void probe(cosim::Time now);
+    void ask_peer();
 
     Endpoint local_, peer_;
     Settings settings_;
@@ -187,9 +199,17 @@ class TcpConnection {
     int attempts_ = 0;
     cosim::Time retransmit_at_ = cosim::kNever;
     cosim::Time probe_at_ = cosim::kNever;
-    int probes_ = 0;
+    bool more_ = false;                      ///< what was written last is to be continued
+    cosim::Time uncork_at_ = cosim::kNever;  ///< part of a segment is held back so long
+    int probes_ = 0;                         ///< while the peer has no room
+    int unanswered_probes_ = 0;              ///< of them, since it was heard last
+    cosim::Time progress_at_ = 0;  ///< last acknowledgement, or first segment since all was acknowledged
+    cosim::Time stuck_since_ = 0;  ///< the peer has no room
+    cosim::Time keep_at_ = cosim::kNever;  ///< keep-alive: the peer's silence is looked at
+    int keep_probes_ = 0;
 
     // Receiving
+    cosim::Time heard_at_ = 0;      ///< last segment
     std::uint32_t expected_ = 0;    ///< RCV.NXT
     std::uint32_t advertised_ = 0;  ///< right edge of the window that the peer knows
     std::string in_;

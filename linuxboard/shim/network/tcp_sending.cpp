@@ -19,10 +19,11 @@ using protocols::kSyn;
 namespace {
 constexpr Time kShortestTimeout = 200 * cosim::kMillisecond;  // TCP_RTO_MIN
 constexpr Time kLongestTimeout = 120 * cosim::kSecond;        // TCP_RTO_MAX
-constexpr int kSynAttempts = 6, kAnswerAttempts = 5;          // tcp_syn_retries, tcp_synack_retries
+constexpr int kAnswerAttempts = 5;                            // tcp_synack_retries
 constexpr int kDataAttempts = 15, kOrphanAttempts = 8;        // tcp_retries2, tcp_orphan_retries
 constexpr std::uint32_t kFirstSegments = 10;                  // TCP_INIT_CWND, RFC 6928
 constexpr int kDuplicatesOfLoss = 3;
+constexpr Time kLongestCork = 200 * cosim::kMillisecond;  // tcp(7), TCP_CORK
 }  // namespace
 
 bool TcpConnection::fin_sent() const {
@@ -59,7 +60,7 @@ void TcpConnection::send_syn(bool answer) {
     syn.flags = static_cast<protocols::Octet>(answer ? kSyn | kAck : kSyn);
     if (!answer) syn.acknowledged = 0;
     syn.window = window();
-    syn.most = static_cast<std::uint16_t>(kSegment);
+    syn.most = static_cast<std::uint16_t>(settings_.most_segment);
     if (next_ != first_) ++counts_.retransmitted;
     next_ = highest_ = first_ + 1;
     ++counts_.sent;
@@ -90,8 +91,9 @@ void TcpConnection::send_segment(std::uint32_t sequence, std::size_t length, boo
     acknowledge_at_ = kNever;
     unanswered_ = 0;
     const std::uint32_t end = sequence + segment.length();
+    const bool again = before(sequence, highest_);
     ++counts_.sent;
-    if (before(sequence, highest_)) {
+    if (again) {
         ++counts_.retransmitted;
     } else {
         counts_.octets_sent += length;
@@ -102,7 +104,10 @@ void TcpConnection::send_segment(std::uint32_t sequence, std::size_t length, boo
         }
     }
     if (after(end, highest_)) highest_ = end;
-    if (retransmit_at_ == kNever) retransmit_at_ = now + timeout_;
+    if (retransmit_at_ == kNever) {
+        if (!again) progress_at_ = now;
+        await_acknowledgement(now);
+    }
     out_.push_back(std::move(segment));
 }
 
@@ -121,18 +126,22 @@ void TcpConnection::send(Time now) {
         const bool worth = length == segment_ || again || fin ||
                            (all && (settings_.no_delay || flight() == 0)) ||
                            (length > 0 && 2 * length >= widest_window_);
-        if (!worth) break;
+        const bool held = (settings_.cork || more_) && length < segment_ && !again && !fin;
+        if (held && uncork_at_ == kNever) uncork_at_ = now + kLongestCork;
+        if (!worth || (held && now < uncork_at_)) break;
+        uncork_at_ = kNever;
         send_segment(next_, length, fin, now);
         next_ += static_cast<std::uint32_t>(length) + (fin ? 1 : 0);
         if (fin) break;
     }
     if (acknowledge_now_) send_acknowledgement();
     // The peer has no room: it is asked for it, as its word that it has some again may be lost.
-    const bool stuck = may_send && flight() == 0 && unsent() > 0;
+    const bool stuck = may_send && flight() == 0 && unsent() > 0 && uncork_at_ == kNever;
     if (!stuck) {
         probe_at_ = kNever;
         probes_ = 0;
     } else if (probe_at_ == kNever) {
+        stuck_since_ = now;
         probe_at_ = now + timeout_;
     }
 }
@@ -140,14 +149,33 @@ void TcpConnection::send(Time now) {
 void TcpConnection::probe(Time now) {
     probe_at_ = kNever;
     if (unsent() == 0) return;
-    if (++probes_ > kDataAttempts) return end(ETIMEDOUT);
+    if (outlasted(stuck_since_, now) || ++unanswered_probes_ > kDataAttempts) return end(ETIMEDOUT);
+    ++probes_;
+    ask_peer();
+    probe_at_ = now + std::min(timeout_ << std::min(probes_, 9), kLongestTimeout);
+    if (settings_.user_timeout > 0)
+        probe_at_ = std::min(probe_at_, std::max(stuck_since_ + settings_.user_timeout, now + 1));
+}
+
+/// An old number: it has to be answered.
+void TcpConnection::ask_peer() {
     Segment segment = bare();
-    segment.sequence = next_ - 1;  // an old number: it has to be answered
+    segment.sequence = next_ - 1;
     segment.flags = kAck;
     segment.window = window();
     ++counts_.sent;
     out_.push_back(segment);
-    probe_at_ = now + std::min(timeout_ << std::min(probes_, 9), kLongestTimeout);
+}
+
+void TcpConnection::await_acknowledgement(Time now) {
+    retransmit_at_ = now + timeout_;
+    if (settings_.user_timeout > 0)
+        retransmit_at_ = std::min(retransmit_at_, std::max(progress_at_ + settings_.user_timeout, now + 1));
+}
+
+/// What began at `since` has lasted as long as TCP_USER_TIMEOUT lets it.
+bool TcpConnection::outlasted(Time since, Time now) const {
+    return settings_.user_timeout > 0 && now - since >= settings_.user_timeout;
 }
 
 void TcpConnection::send_first_again(Time now) {
@@ -194,7 +222,7 @@ void TcpConnection::duplicate_acknowledgement(Time now) {
     recovering_ = true;
     congestion_ = threshold_ + kDuplicatesOfLoss * segment;
     send_first_again(now);
-    retransmit_at_ = now + timeout_;
+    await_acknowledgement(now);
 }
 
 void TcpConnection::acknowledged(std::uint32_t octets, std::uint32_t number, Time now) {
@@ -227,7 +255,11 @@ void TcpConnection::acknowledged(std::uint32_t octets, std::uint32_t number, Tim
     if (measured_)
         timeout_ = std::clamp(smoothed_ + std::max(4 * variation_, kShortestTimeout), kShortestTimeout,
                               kLongestTimeout);
-    retransmit_at_ = unacknowledged_ == highest_ ? kNever : now + timeout_;
+    progress_at_ = now;
+    if (unacknowledged_ == highest_)
+        retransmit_at_ = kNever;
+    else
+        await_acknowledgement(now);
     if (data > 0) stir();
     if (!fin) return;
     if (state_ == State::FinWait1)
@@ -252,17 +284,18 @@ void TcpConnection::sample(Time round_trip) {
 
 void TcpConnection::timed_out(Time now) {
     retransmit_at_ = kNever;
-    const int most = state_ == State::SynSent       ? kSynAttempts
+    const int most = state_ == State::SynSent       ? settings_.syn_attempts
                      : state_ == State::SynReceived ? kAnswerAttempts
                      : orphan_                      ? kOrphanAttempts
                                                     : kDataAttempts;
-    if (++attempts_ > most) return end(ETIMEDOUT);
+    const bool by_time = settings_.user_timeout > 0 && synchronised();
+    if (outlasted(progress_at_, now) || (++attempts_ > most && !by_time)) return end(ETIMEDOUT);
     ++counts_.timeouts;
     timing_ = false;
     timeout_ = std::min(2 * timeout_, kLongestTimeout);
     if (!synchronised()) {
         send_syn(state_ == State::SynReceived);
-        retransmit_at_ = now + timeout_;
+        await_acknowledgement(now);
         return;
     }
     const auto segment = static_cast<std::uint32_t>(segment_);
@@ -276,15 +309,22 @@ void TcpConnection::timed_out(Time now) {
     // A peer without room is asked again all the same.
     if (retransmit_at_ == kNever) {
         send_first_again(now);
-        if (retransmit_at_ == kNever) retransmit_at_ = now + timeout_;
+        if (retransmit_at_ == kNever) await_acknowledgement(now);
     }
 }
 
-std::size_t TcpConnection::write(std::string_view data, Time now) {
+std::size_t TcpConnection::write(std::string_view data, Time now, bool more) {
     const std::size_t taken = std::min(data.size(), room());
+    more_ = more;
     out_data_.append(data.substr(0, taken));
     if (taken > 0) send(now);
     return taken;
+}
+
+void TcpConnection::set_cork(bool on, Time now) {
+    settings_.cork = on;
+    if (!on) more_ = false;
+    if (!on && synchronised()) send(now);
 }
 
 void TcpConnection::set_no_delay(bool on, Time now) {

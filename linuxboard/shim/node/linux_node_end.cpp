@@ -240,8 +240,11 @@ std::string LinuxNode::finish() {
         for (std::string& line : camera->take_unknown())
             warn(std::move(line));
     }
-    if (const NetworkStack* network = kernel_.network())
+    if (const NetworkStack* network = kernel_.network()) {
         report["network"] = nlohmann::ordered_json::parse(network->report());
+        for (const std::string& name : network->unknown_names())
+            warn(fmt::format("no computer of the network has the name '{}'", name));
+    }
     report["warnings"] = warnings_;
     if (!faults_.empty()) report["faults"] = cosim::fault_results(faults_.carried(), until_);
     return report.dump();

@@ -59,8 +59,10 @@ void LinuxNode::deal_out() {
     for (FinishedCall& call : kernel_.take_finished()) {
         Client* client = client_at(slot_of(call.header.thread));
         if (client == nullptr) continue;
-        if (call.opens && call.header.error == 0)
-            client->handles.insert(static_cast<int>(call.header.result));
+        const auto handle = static_cast<int>(call.header.result);
+        // A process that was passed what it has already goes on with one reference.
+        if (call.opens && call.header.error == 0 && !client->handles.insert(handle).second)
+            kernel_.release(handle, call.header.time);
         client->finished.push_back(std::move(call));
     }
 }

@@ -15,7 +15,7 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 9;
+inline constexpr std::uint32_t kVersion = 10;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -56,19 +56,21 @@ enum class Op : std::uint32_t {
     Resolve,    ///< data: a computer's name, for a board whose names a fault may keep from it; fails with
                 ///< EAGAIN
     // Sockets; addresses are SocketAddress
-    Socket,       ///< a = 1: a stream, 0: datagrams; result: handle
+    Socket,       ///< a = 0: datagrams, 1: a stream, 2: ICMP echoes; result: handle
     Bind,         ///< handle, data: address
     Connect,      ///< handle, data: address
     Listen,       ///< handle, a = backlog
     Accept,       ///< handle; result: handle; data: address
     Send,         ///< handle, a = 1: `data` begins with the address to send to; result: bytes taken;
-                  ///< b = 1: the beginning of a datagram, of which more follows
+                  ///< b = of kSend...
     Receive,      ///< handle, a = most bytes, b = of kReceive...; data: SocketReceived, bytes
     Shutdown,     ///< handle, a = as in shutdown(2)
     SetOption,    ///< handle, a = level, b = name, data: value
     GetOption,    ///< handle, a = level, b = name; data: value
     SocketName,   ///< handle, a = 1: the other end's; data: address
     SocketQueue,  ///< handle, a = 1: bytes that are not acknowledged, 0: bytes to read
+    Give,         ///< handle is on its way to another process (SCM_RIGHTS); data: PassedFile
+    Take,         ///< data: PassedFile, of which the inode counts; result: handle, data: all of it
 };
 
 enum class DeviceKind : std::uint32_t { None, Tty, I2c, Video, Socket };
@@ -117,6 +119,13 @@ struct PollEntry {
 };
 inline constexpr std::uint32_t kNeverSeen = 0xffffffff;
 
+/// A socket on its way between processes: found by the host's descriptor that goes with it.
+struct PassedFile {
+    std::uint64_t inode = 0;
+    std::int32_t flags = 0;
+    std::uint32_t stream = 0;
+};
+
 /// IPv4, both as numbers of the host.
 struct SocketAddress {
     std::uint32_t address = 0;
@@ -124,11 +133,21 @@ struct SocketAddress {
     std::uint16_t padding = 0;
 };
 
+/// kSendPart: the beginning of a datagram, of which the rest follows; kSendMore: MSG_MORE on a stream.
+inline constexpr std::uint32_t kSendPart = 1, kSendMore = 2;
 /// kReceiveRest: what a reply had no room for of the datagram before, whose size was its result.
 inline constexpr std::uint32_t kReceivePeek = 1, kReceiveAll = 2, kReceiveRest = 4;
+/// What recvmsg() is to give beside the data, as options of the socket want it.
+inline constexpr std::uint32_t kWithPacketInfo = 1, kWithTimeToLive = 2, kWithService = 4, kWithTime = 8,
+                               kWithFineTime = 16;
 struct SocketReceived {
     SocketAddress from{};
     std::uint32_t size = 0;  ///< of the whole datagram
+    std::uint32_t to = 0;    ///< its receiver's address
+    std::uint32_t with = 0;  ///< kWith...
+    std::uint8_t time_to_live = 0, service = 0;
+    std::uint16_t padding = 0;
+    std::int64_t time = 0;  ///< of its arrival, picoseconds of simulated time
 };
 
 /// A computer of the network, as in /etc/hosts.

@@ -141,6 +141,12 @@ void take_over_files(FileEntry* list, std::size_t count) {
         if (REAL(fcntl)(list[i].fd, F_GETFD) < 0) release_file(list[i].fd);
 }
 
+int descriptor_of(int handle) {
+    for (int fd = 0; fd < kMostDescriptors; ++fd)
+        if (table[fd] != nullptr && table[fd]->handle == handle) return fd;
+    return -1;
+}
+
 void share_file(int from, int to) {
     if (to < 0 || to >= kMostDescriptors || from == to) return;
     release_file(to);
@@ -178,7 +184,7 @@ std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
     mark_call("read");
     pthread_testcancel();
     if (file.kind == OpenFile::Kind::Random) return read_random(buffer, size);
-    if (file.kind == OpenFile::Kind::Socket) return read_socket(file, buffer, size, 0);
+    if (file.kind == OpenFile::Kind::Socket) return size == 0 ? 0 : read_socket(file, buffer, size, 0);
     charge(page().charges.device);
     if ((file.flags & O_ACCMODE) == O_WRONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
         errno = EBADF;

@@ -56,6 +56,8 @@ std::size_t open_files(FileEntry* list, std::size_t most);
 /// Takes over what open_files() gave, except what the host has closed since (FD_CLOEXEC).
 void take_over_files(FileEntry* list, std::size_t count);
 
+/// A descriptor of the open file that the node knows as `handle`, or -1.
+int descriptor_of(int handle);
 /// Another descriptor for the same open file.
 void share_file(int from, int to);
 /// Forgets the descriptor; the last one closes the device. False if it is none of ours.

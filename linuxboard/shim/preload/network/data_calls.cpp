@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/time/clocks.h"
 #include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
@@ -45,6 +46,7 @@ std::int64_t send_piece(OpenFile& file, const char* data, std::size_t size, int 
     request.op = wire::Op::Send;
     request.handle = file.handle;
     request.nonblocking = !waits(file, flags);
+    if (file.stream && (flags & MSG_MORE) != 0) request.b = wire::kSendMore;
     std::vector<char> all(data, data + size);
     if (to != nullptr) {
         request.a = 1;
@@ -54,7 +56,7 @@ std::int64_t send_piece(OpenFile& file, const char* data, std::size_t size, int 
     std::size_t done = 0;
     for (; all.size() - done > wire::kMaximumData; done += wire::kMaximumData) {
         wire::Request begin = request;
-        begin.b = 1;
+        begin.b = wire::kSendPart;
         device_call(begin, all.data() + done, wire::kMaximumData);
     }
     const std::int64_t sent = device_call(request, all.data() + done, all.size() - done, nullptr, 0, true);
@@ -74,7 +76,6 @@ std::int64_t receive(OpenFile& file, std::size_t most, int flags, Arrived& arriv
     if ((flags & MSG_ERRQUEUE) != 0) return fail(EAGAIN);
     constexpr std::size_t kMostOfStream = wire::kMaximumData - sizeof(wire::SocketReceived);
     constexpr std::size_t kMostOfDatagram = 65'535;
-    if (file.stream && most == 0) return 0;
     wire::Request request;
     request.op = wire::Op::Receive;
     request.handle = file.handle;
@@ -132,6 +133,58 @@ bool get_vector(std::vector<iovec>& parts, const msghdr& message) {
     return copy_from_program(parts.data(), message.msg_iov, parts.size() * sizeof(iovec));
 }
 
+/// With one interface the address and interface that a datagram is to go out by (IP_PKTINFO) are known.
+bool check_control(const msghdr& message) {
+    std::vector<char> control(std::min<std::size_t>(message.msg_controllen, 4096));
+    if (!copy_from_program(control.data(), message.msg_control, control.size())) return false;
+    msghdr copy{};
+    copy.msg_control = control.data();
+    copy.msg_controllen = control.size();
+    for (const cmsghdr* part = CMSG_FIRSTHDR(&copy); part != nullptr;
+         part = CMSG_NXTHDR(&copy, const_cast<cmsghdr*>(part)))
+        if (part->cmsg_level != IPPROTO_IP || part->cmsg_type != IP_PKTINFO)
+            note("control data of sendmsg() of level %d and type %d is not carried by the network",
+                 part->cmsg_level, part->cmsg_type);
+    return true;
+}
+
+/// What the socket's options want beside a datagram, in Linux' order, as far as there is room.
+bool put_control(const wire::SocketReceived& head, msghdr& message) {
+    alignas(cmsghdr) char control[256] = {};
+    std::size_t size = 0;
+    const auto add = [&](int level, int type, const auto& value) {
+        auto* part = reinterpret_cast<cmsghdr*>(control + size);
+        part->cmsg_level = level;
+        part->cmsg_type = type;
+        part->cmsg_len = CMSG_LEN(sizeof value);
+        std::memcpy(CMSG_DATA(part), &value, sizeof value);
+        size += CMSG_SPACE(sizeof value);
+    };
+    const std::int64_t since = std::max<std::int64_t>(now() - head.time, 0) / kNanosecond;
+    const timespec stamp = timespec_of_nanoseconds(clock_nanoseconds(CLOCK_REALTIME) - since);
+    if ((head.with & wire::kWithTime) != 0)
+        add(SOL_SOCKET, SO_TIMESTAMP, timeval{stamp.tv_sec, stamp.tv_nsec / 1000});
+    if ((head.with & wire::kWithFineTime) != 0) add(SOL_SOCKET, SO_TIMESTAMPNS, stamp);
+    if ((head.with & wire::kWithPacketInfo) != 0) {
+        const bool loopback = head.to >> 24 == 127 || head.from.address == page().network_address;
+        in_pktinfo info{};
+        info.ipi_ifindex = loopback ? kLoopbackIndex : kWirelessIndex;
+        info.ipi_addr.s_addr = htonl(head.to);
+        const bool own = head.to == page().network_address || head.to >> 24 == 127;
+        info.ipi_spec_dst.s_addr = htonl(own ? head.to : page().network_address);
+        add(IPPROTO_IP, IP_PKTINFO, info);
+    }
+    if ((head.with & wire::kWithTimeToLive) != 0) add(IPPROTO_IP, IP_TTL, int{head.time_to_live});
+    if ((head.with & wire::kWithService) != 0) add(IPPROTO_IP, IP_TOS, head.service);
+    const std::size_t room = message.msg_control != nullptr ? message.msg_controllen : 0;
+    if (size > room) {
+        message.msg_flags |= MSG_CTRUNC;
+        size = 0;
+    }
+    message.msg_controllen = size;
+    return size == 0 || copy_to_program(message.msg_control, control, size);
+}
+
 std::int64_t send_message(OpenFile& file, const msghdr& message, int flags) {
     std::vector<iovec> parts;
     if (!get_vector(parts, message)) return -1;
@@ -142,7 +195,7 @@ std::int64_t send_message(OpenFile& file, const msghdr& message, int flags) {
         data.resize(before + size);
         if (size > 0 && !copy_from_program(data.data() + before, part.iov_base, size)) return -1;
     }
-    if (message.msg_controllen != 0) note("control data of sendmsg() is not carried by the network");
+    if (message.msg_controllen != 0 && !check_control(message)) return -1;
     if (message.msg_name == nullptr || file.stream)
         return send_bytes(file, data.data(), data.size(), flags, nullptr);
     sockaddr_in to{};
@@ -168,7 +221,10 @@ std::int64_t receive_message(OpenFile& file, msghdr& message, int flags) {
         done += size;
     }
     message.msg_flags = !file.stream && arrived.head.size > arrived.data.size() ? MSG_TRUNC : 0;
-    message.msg_controllen = 0;
+    if (file.stream)
+        message.msg_controllen = 0;
+    else if (!put_control(arrived.head, message))
+        return -1;
     if (file.stream || message.msg_name == nullptr) {
         message.msg_namelen = 0;
     } else if (!put_sender(arrived.head, static_cast<sockaddr*>(message.msg_name), &message.msg_namelen)) {
@@ -271,7 +327,10 @@ ssize_t send_outside(int fd, const msghdr* theirs, int flags) {
             if (const pid_t host = host_process(number); host > 0) number = host;
         });
     }
-    return REAL(sendmsg)(fd, &message, flags);
+    if (networked()) give_descriptors(message);
+    const ssize_t sent = REAL(sendmsg)(fd, &message, flags);
+    if (sent < 0 && networked()) forget_given(message);
+    return sent;
 }
 }  // namespace
 
@@ -342,6 +401,11 @@ SHIM_EXPORT ssize_t recvmsg(int fd, msghdr* theirs, int flags) {
                                  : outside(fd, POLLIN, [&] { return REAL(recvmsg)(fd, theirs, flags); });
     if (active() && received >= 0)
         change_credentials(*theirs, [](pid_t& number) { number = program_process(number); });
+    if (networked() && received >= 0) {
+        const int error = errno;
+        take_descriptors(*theirs);
+        errno = error;
+    }
     return received;
 }
 

@@ -165,6 +165,15 @@ int socket_ioctl(OpenFile& file, unsigned long request, void* argument) {
     case SIOCGIFMTU:
     case SIOCGIFHWADDR:
         return ask_interface(request, argument);
+    case SIOCSIFADDR:
+    case SIOCSIFNETMASK:
+    case SIOCSIFBRDADDR:
+    case SIOCSIFFLAGS:
+    case SIOCSIFMTU:
+    case SIOCSIFHWADDR:
+    case SIOCADDRT:
+    case SIOCDELRT:
+        return fail(EPERM);  // as for a user without rights
     default:
         note("the ioctl 0x%lx of a socket is not carried by the network", request);
         return fail(ENOTTY);

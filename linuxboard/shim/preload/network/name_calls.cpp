@@ -31,11 +31,20 @@ bool is_numeric(const char* text, std::uint32_t& address) {
     return true;
 }
 
+namespace {
+/// Without regard to case, and to the dot of a name that is complete.
+bool same_name(const char* name, const char* known) {
+    const std::size_t length = std::strlen(known);
+    if (strncasecmp(name, known, length) != 0 || length == 0) return false;
+    return name[length] == '\0' || std::strcmp(name + length, ".") == 0;
+}
+}  // namespace
+
 std::uint32_t address_of_name(const char* name) {
-    if (strcasecmp(name, "localhost") == 0) return INADDR_LOOPBACK;
+    if (same_name(name, "localhost")) return INADDR_LOOPBACK;
     for (std::uint32_t i = 0; i < page().host_count; ++i)
-        if (strcasecmp(name, page().hosts[i].name) == 0) return page().hosts[i].address;
-    if (strcasecmp(name, page().host_name) == 0) return page().network_address;
+        if (same_name(name, page().hosts[i].name)) return page().hosts[i].address;
+    if (same_name(name, page().host_name)) return page().network_address;
     return 0;
 }
 
@@ -50,7 +59,7 @@ int open_network_file(const char* path) {
     if (!is_linked() || page().networked == 0 || !is_text(path)) return -1;
     const bool hosts = std::strcmp(path, "/etc/hosts") == 0;
     if (!hosts && std::strcmp(path, "/etc/resolv.conf") != 0) return -1;
-    std::string text;
+    std::string text = "nameserver 127.0.0.53\n";
     if (hosts) {
         text = "127.0.0.1\tlocalhost\n";
         for (std::uint32_t i = 0; i < page().host_count; ++i) {
@@ -129,22 +138,38 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {{SOCK_STREAM, IPPROTO_TCP}, {SOCK_DGRAM, IPPROTO_UDP}, {SOCK_RAW, IPPROTO_IP}};
 
+sockaddr_in place_of(std::uint32_t address, std::uint16_t port) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(port);
+    place.sin_addr.s_addr = htonl(address);
+    return place;
+}
+
+/// IPv6 by number: known, as of any C library, though no socket can have it.
+bool find_six(const char* node, const addrinfo& wish, std::uint16_t port, sockaddr_in6& place) {
+    if (wish.ai_family == AF_INET || (wish.ai_family == AF_UNSPEC && node == nullptr)) return false;
+    place = {};
+    place.sin6_family = AF_INET6;
+    place.sin6_port = htons(port);
+    if (node != nullptr) return inet_pton(AF_INET6, node, &place.sin6_addr) == 1;
+    place.sin6_addr = (wish.ai_flags & AI_PASSIVE) != 0 ? in6addr_any : in6addr_loopback;
+    return true;
+}
+
 /// As the C library makes it, so that its freeaddrinfo() frees it.
-addrinfo* new_entry(const Kind& kind, std::uint32_t address, std::uint16_t port) {
-    auto* memory = static_cast<char*>(std::malloc(sizeof(addrinfo) + sizeof(sockaddr_in)));
+template <typename Place>
+addrinfo* new_entry(const Kind& kind, int family, const Place& place) {
+    auto* memory = static_cast<char*>(std::malloc(sizeof(addrinfo) + sizeof place));
     if (memory == nullptr) return nullptr;
     auto* entry = reinterpret_cast<addrinfo*>(memory);
-    auto* place = reinterpret_cast<sockaddr_in*>(memory + sizeof(addrinfo));
-    *place = {};
-    place->sin_family = AF_INET;
-    place->sin_port = htons(port);
-    place->sin_addr.s_addr = htonl(address);
+    std::memcpy(memory + sizeof(addrinfo), &place, sizeof place);
     *entry = {};
-    entry->ai_family = AF_INET;
+    entry->ai_family = family;
     entry->ai_socktype = kind.type;
     entry->ai_protocol = kind.protocol;
-    entry->ai_addrlen = sizeof(sockaddr_in);
-    entry->ai_addr = reinterpret_cast<sockaddr*>(place);
+    entry->ai_addrlen = sizeof place;
+    entry->ai_addr = reinterpret_cast<sockaddr*>(memory + sizeof(addrinfo));
     return entry;
 }
 
@@ -164,15 +189,20 @@ SHIM_EXPORT int getaddrinfo(const char* node, const char* service, const addrinf
     Service port;
     if (const int error = find_service(service, wish.ai_flags, wish.ai_socktype, port)) return error;
     std::uint32_t address = 0;
-    if (const int error = find_node(node, wish.ai_flags, address)) return error;
-    if (wish.ai_family == AF_INET6) return EAI_ADDRFAMILY;
+    sockaddr_in6 six{};
+    const bool is_six = find_six(node, wish, port.port, six);
+    if (!is_six) {
+        if (const int error = find_node(node, wish.ai_flags, address)) return error;
+        if (wish.ai_family == AF_INET6) return EAI_ADDRFAMILY;
+    }
     addrinfo* first = nullptr;
     addrinfo** next = &first;
     for (const Kind& kind : kKinds) {
         if (wish.ai_socktype != 0 && wish.ai_socktype != kind.type) continue;
         const bool given = wish.ai_protocol != 0 && kind.type != SOCK_RAW;
         if (given && wish.ai_protocol != kind.protocol) continue;
-        *next = new_entry(kind, address, port.port);
+        *next =
+            is_six ? new_entry(kind, AF_INET6, six) : new_entry(kind, AF_INET, place_of(address, port.port));
         if (*next == nullptr) {
             freeaddrinfo(first);
             return EAI_MEMORY;
@@ -246,7 +276,7 @@ int find_host(const char* name, int family, hostent* entry, char* buffer, std::s
     std::uint32_t address = 0;
     const int failed = family == AF_INET ? find_node(name, 0, address) : EAI_NONAME;
     if (failed != 0) {
-        *error = failed == EAI_AGAIN ? TRY_AGAIN : HOST_NOT_FOUND;
+        *error = h_errno = failed == EAI_AGAIN ? TRY_AGAIN : HOST_NOT_FOUND;
         return 0;
     }
     const int full = fill(name, address, entry, buffer, size);
@@ -276,7 +306,7 @@ int find_by_address(const void* address, socklen_t length, int family, hostent* 
     const bool known = family == AF_INET && length == sizeof number && get_from_program(number, address);
     const char* name = known ? name_of_address(ntohl(number.s_addr)) : nullptr;
     if (name == nullptr) {
-        *error = HOST_NOT_FOUND;
+        *error = h_errno = HOST_NOT_FOUND;
         return 0;
     }
     const int full = fill(name, ntohl(number.s_addr), entry, buffer, size);

@@ -115,18 +115,20 @@ int refuse_family(int domain, int type) {
 int open_socket(int domain, int type, int protocol) {
     mark_call("socket");
     charge(page().charges.device);
-    constexpr int kFlags = SOCK_NONBLOCK | SOCK_CLOEXEC;
+    constexpr int kFlags = SOCK_NONBLOCK | SOCK_CLOEXEC, kLastType = SOCK_PACKET;
     const int kind = type & ~kFlags;
     if (domain != AF_INET || kind == SOCK_RAW) return refuse_family(domain, kind);
     const bool stream = kind == SOCK_STREAM;
+    if (kind < 0 || kind > kLastType) return fail(EINVAL);
     if (!stream && kind != SOCK_DGRAM) return fail(ESOCKTNOSUPPORT);
-    if (protocol != 0 && protocol != (stream ? IPPROTO_TCP : IPPROTO_UDP)) {
+    const bool echo = !stream && protocol == IPPROTO_ICMP;
+    if (protocol != 0 && !echo && protocol != (stream ? IPPROTO_TCP : IPPROTO_UDP)) {
         note("sockets of the IP protocol %d are not carried by the network", protocol);
         return fail(EPROTONOSUPPORT);
     }
     wire::Request request;
     request.op = wire::Op::Socket;
-    request.a = stream ? 1 : 0;
+    request.a = stream ? 1 : echo ? 2 : 0;
     const auto handle = static_cast<int>(device_call(request));
     return handle < 0 ? -1 : new_descriptor(handle, stream, type);
 }

@@ -25,6 +25,13 @@ std::int64_t named(std::int64_t result, const wire::SocketAddress& address);
 std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int flags,
                         const wire::SocketAddress* to);
 
+// passed_files.cpp: descriptors that go to another process beside a message (SCM_RIGHTS). Those of sockets
+// of the network are announced to the node before the message, and taken from it after.
+void give_descriptors(const msghdr& message);
+void take_descriptors(msghdr& message);
+/// The message was not sent.
+void forget_given(const msghdr& message);
+
 /// sendfile() to the socket `to`.
 std::int64_t send_file(int to, int from, off_t* offset, std::size_t size);
 

@@ -536,8 +536,15 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
             errno = EINTR;
             return -1;
         }
+        const bool signalled = signals_due();
         while (signals_due())
             take_signals();
+        // A wait that ended without news at the very time of an alarm was ended by it.
+        if (signalled && interruptible && result == 0 && request.op == wire::Op::Poll &&
+            page().networked != 0) {
+            errno = EINTR;
+            return -1;
+        }
         if (result < 0) errno = error;
         return result;
     }

@@ -71,6 +71,33 @@ int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) 
     return 0;
 }
 
+PollItem item_of(const Watch& watch) {
+    constexpr std::uint32_t kKnown = POLLIN | POLLOUT | POLLPRI | POLLRDNORM | POLLWRNORM | POLLRDHUP;
+    return {watch.fd, static_cast<short>(watch.event.events & kKnown), 0, watch.seen};
+}
+
+/// An epoll that the one waited for watches, and what it watches in turn among the entries of that wait.
+struct Nested {
+    Watch* watch = nullptr;
+    std::size_t begin = 0, end = 0;
+};
+
+/// Epolls of which something watched is ready become events.
+int gather_nested(const std::vector<Nested>& all, const std::vector<PollItem>& entries, epoll_event* events,
+                  int most) {
+    int total = 0;
+    for (const Nested& nested : all) {
+        const bool ready = std::any_of(entries.begin() + static_cast<std::ptrdiff_t>(nested.begin),
+                                       entries.begin() + static_cast<std::ptrdiff_t>(nested.end),
+                                       [](const PollItem& entry) { return entry.revents != 0; });
+        if (!ready || total == most || (nested.watch->event.events & EPOLLIN) == 0) continue;
+        events[total] = nested.watch->event;
+        events[total++].events = EPOLLIN;
+        if ((nested.watch->event.events & EPOLLONESHOT) != 0) nested.watch->armed = false;
+    }
+    return total;
+}
+
 /// Devices that are ready in `entries` become events.
 int gather(int epoll_fd, const PollItem* entries, nfds_t count, epoll_event* events, int most) {
     int total = 0;
@@ -104,6 +131,17 @@ void drop_watches(int fd) {
         if (watches[i].fd == fd) watches[i] = {};
 }
 
+void add_watched(int epoll_fd, std::vector<PollItem>& items) {
+    for (int i = 0; i < watch_end; ++i) {
+        const Watch& watch = watches[i];
+        if (watch.epoll_fd != epoll_fd || !watch.armed) continue;
+        if (open_file(watch.fd) != nullptr)
+            items.push_back(item_of(watch));
+        else
+            add_watched(watch.fd, items);  // the kernel lets epolls watch each other in no circle
+    }
+}
+
 bool epoll_watches_outside() {
     return watches_outside;
 }
@@ -112,6 +150,9 @@ bool epoll_watches_outside() {
 SHIM_EXPORT int epoll_create1(int flags) noexcept {
     const int fd = REAL(epoll_create1)(flags);
     if (active()) mark_internal(fd);
+    // Of another epoll that had this number.
+    for (int i = 0; i < watch_end; ++i)
+        if (watches[i].epoll_fd == fd) watches[i] = {};
     return fd;
 }
 
@@ -122,7 +163,16 @@ SHIM_EXPORT int epoll_create(int) noexcept {
 SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* event) noexcept {
     if (open_file(fd) == nullptr) {
         watches_outside = watches_outside || !is_internal(fd);
-        return REAL(epoll_ctl)(epoll_fd, operation, fd, event);
+        const int result = REAL(epoll_ctl)(epoll_fd, operation, fd, event);
+        // The host does not see what an epoll watches here.
+        const int error = errno;
+        if (result == 0 && active() && is_internal(fd) && is_epoll(fd)) {
+            Watch* const before = find_watch(epoll_fd, fd);
+            if (operation == EPOLL_CTL_ADD && before != nullptr) *before = {};  // of one that was closed
+            change_watch(epoll_fd, operation, fd, event);
+        }
+        errno = error;
+        return result;
     }
     charge(page().charges.device);
     epoll_event wanted{};
@@ -146,11 +196,20 @@ static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline
     }
     if (!is_epoll(epoll_fd)) return -1;
     std::vector<PollItem> entries{{epoll_fd, POLLIN, 0, 0}};
+    std::vector<Nested> nested;
     for (int i = 0; i < watch_end; ++i) {
-        const Watch& watch = watches[i];
-        if (watch.epoll_fd != epoll_fd || !watch.armed || open_file(watch.fd) == nullptr) continue;
-        constexpr std::uint32_t kKnown = POLLIN | POLLOUT | POLLPRI | POLLRDNORM | POLLWRNORM | POLLRDHUP;
-        entries.push_back({watch.fd, static_cast<short>(watch.event.events & kKnown), 0, watch.seen});
+        Watch& watch = watches[i];
+        if (watch.epoll_fd != epoll_fd || !watch.armed) continue;
+        if (open_file(watch.fd) != nullptr)
+            entries.push_back(item_of(watch));
+        else
+            nested.push_back({&watch});
+    }
+    const std::size_t direct = entries.size();
+    for (Nested& one : nested) {
+        one.begin = entries.size();
+        add_watched(one.watch->fd, entries);
+        one.end = entries.size();
     }
     static_cast<void>(mask);  // as ppoll() has it here, and its nanoseconds
     if (deadline != kNever)
@@ -158,8 +217,9 @@ static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline
     const int ready = poll_items(entries.data(), entries.size(), deadline);
     if (ready <= 0) return ready;
     std::vector<epoll_event> ready_devices(std::min<std::size_t>(entries.size(), most));
-    const int devices = gather(epoll_fd, entries.data(), entries.size(), ready_devices.data(),
-                               static_cast<int>(ready_devices.size()));
+    const int room = static_cast<int>(ready_devices.size());
+    int devices = gather(epoll_fd, entries.data(), direct, ready_devices.data(), room);
+    devices += gather_nested(nested, entries, ready_devices.data() + devices, room - devices);
     if (!copy_to_program(events, ready_devices.data(),
                          static_cast<std::size_t>(devices) * sizeof(epoll_event)))
         return -1;

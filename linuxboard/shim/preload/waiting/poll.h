@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace puckloop::shim {
 
@@ -22,6 +23,8 @@ struct PollItem {
 int poll_items(PollItem* items, std::size_t count, Time deadline);
 
 // epoll_calls.cpp
+/// Adds what the epoll `epoll_fd` watches of devices and sockets, by other epolls too.
+void add_watched(int epoll_fd, std::vector<PollItem>& items);
 /// A host's epoll watches something that neither this program nor time moves.
 bool epoll_watches_outside();
 

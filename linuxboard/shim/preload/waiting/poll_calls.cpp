@@ -177,6 +177,30 @@ int poll_items(PollItem* items, std::size_t count, Time deadline) {
 }
 
 namespace {
+/// poll_until(), where an epoll among the items is ready when something is that it watches.
+int poll_with_epolls(PollItem* items, std::size_t count, Time deadline) {
+    std::vector<PollItem> all;
+    std::vector<std::size_t> ends(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (items[i].fd >= 0 && (items[i].events & POLLIN) != 0 && open_file(items[i].fd) == nullptr)
+            add_watched(items[i].fd, all);
+        ends[i] = all.size();
+    }
+    if (all.empty()) return poll_until(items, count, deadline);
+    all.insert(all.begin(), items, items + count);
+    if (poll_until(all.data(), all.size(), deadline) < 0) return -1;
+    int ready = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        items[i].revents = all[i].revents;
+        for (std::size_t at = i > 0 ? ends[i - 1] : 0; at < ends[i]; ++at)
+            if (all[count + at].revents != 0) items[i].revents |= POLLIN;
+        ready += items[i].revents != 0 ? 1 : 0;
+    }
+    return ready;
+}
+}  // namespace
+
+namespace {
 Time deadline_of(const timespec* timeout) {
     return timeout == nullptr ? kNever : time_after(from_timespec(*timeout));
 }
@@ -191,7 +215,7 @@ int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time 
         if (errors != nullptr && FD_ISSET(fd, errors)) events |= POLLPRI;
         if (events != 0) entries[total++] = {fd, static_cast<short>(events), 0, 0};
     }
-    const int result = poll_until(entries.data(), total, deadline);
+    const int result = poll_with_epolls(entries.data(), total, deadline);
     if (result < 0) return result;
     int bits = 0;
     for (nfds_t i = 0; i < total; ++i) {
@@ -232,7 +256,7 @@ int poll_program(pollfd* theirs, nfds_t count, Time deadline) {
     if (!copy_from_program(entries.data(), theirs, count * sizeof(pollfd))) return -1;
     for (nfds_t i = 0; i < count; ++i)
         items[i] = {entries[i].fd, entries[i].events, 0, 0};
-    const int ready = poll_items(items.data(), count, deadline);
+    const int ready = poll_with_epolls(items.data(), count, deadline);
     for (nfds_t i = 0; i < count; ++i)
         entries[i].revents = items[i].revents;
     return ready >= 0 && !copy_to_program(theirs, entries.data(), count * sizeof(pollfd)) ? -1 : ready;
