@@ -4,6 +4,7 @@
     changelog.gz            CHANGELOG.md
     changelog.Debian.gz     of the packages; its date is the sources' (SOURCE_DATE_EPOCH, the commit, or CHANGELOG.md)
     copyright.puckloop, copyright.gap
+    docs                    the pages, with commands as they are typed where it is installed
     puckloop-VERSION.dist-info   the Python client as Python's tools see it, with its plugin for pytest
 """
 
@@ -14,6 +15,7 @@ import email.utils
 import gzip
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -49,6 +51,14 @@ def make(options: argparse.Namespace) -> None:
     compress(f"puckloop ({version}-{options.revision}) bookworm; urgency=medium\n\n"
              f"  * Version {version}; changelog.gz has what changed.\n\n"
              f" -- {options.maintainer}  {date}\n".encode(), folder / "changelog.Debian.gz")
+
+    # The pages, whose commands are typed without the sources' launcher.
+    pages = shutil.copytree(source / "docs", folder / "docs", ignore=shutil.ignore_patterns("site", "__pycache__"))
+    for page in sorted(pages.rglob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        text = re.sub(r"(?<![\w/])\./puckloop (?!(test|package|release|docs)\b)", "puckloop ", text)
+        page.write_text(text.replace("PYTHONPATH=clients/python PUCKLOOP=./puckloop pytest clients/python/examples",
+                                     "pytest /usr/share/doc/python3-puckloop/examples"), encoding="utf-8")
 
     own = (source / "packaging" / "copyright").read_text(encoding="utf-8")
     libraries = (source / "packaging" / "copyright.libraries").read_text(encoding="utf-8")

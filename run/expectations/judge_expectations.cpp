@@ -172,8 +172,11 @@ std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const c
     std::vector<ExpectationResult> results;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Expectation& expected = all[i];
-        ExpectationResult result{
-            .name = expected.name, .place = expected.place, .subject = expected.subject, .why = {}};
+        ExpectationResult result{.name = expected.name,
+                                 .stated = expected.stated,
+                                 .place = expected.place,
+                                 .subject = expected.subject,
+                                 .why = {}};
         switch (expected.kind) {
         case Kind::Log:
             judge_log(result, expected, setup);
@@ -203,7 +206,8 @@ std::vector<ExpectationResult> judge_expectations(const RunSetup& setup, const c
 }
 
 std::string unmet_text(const ExpectationResult& result) {
-    return fmt::format("expected that {}: {}", result.name, result.why);
+    return fmt::format("expected that {}{}: {}", result.name,
+                       result.stated.empty() ? "" : fmt::format(" ({})", result.stated), result.why);
 }
 
 void fail_unmet(const RunSetup& setup, const std::vector<ExpectationResult>& results,
@@ -216,6 +220,9 @@ void fail_unmet(const RunSetup& setup, const std::vector<ExpectationResult>& res
         outcome.success = false;
         outcome.node = result.subject;
         outcome.text = fmt::format("{}: {}: {}", setup.scenario.file.string(), result.place, text);
+        const auto more =
+            std::count_if(results.begin(), results.end(), [](const auto& one) { return !one.met; }) - 1;
+        if (more > 0) outcome.text += fmt::format(" (and {} more of {} are not met)", more, results.size());
     }
 }
 

@@ -24,16 +24,20 @@ bool has_fault(const RunSetup& setup, const std::string& node) {
     });
 }
 
-std::string silence_of(const std::string& node, const json& report) {
+/// The program's frames on its line came at a rate that the line's other end cannot read.
+bool is_off_rate(const std::string& node, const cosim::Outcome& outcome) {
+    return std::any_of(outcome.links.begin(), outcome.links.end(), [&](const auto& link) {
+        return (link.a == node + ".uart" && link.from_a.uart_off_rate > 0) ||
+               (link.b == node + ".uart" && link.from_b.uart_off_rate > 0);
+    });
+}
+
+std::string silence_of(const std::string& node, const json& report, const cosim::Outcome& outcome) {
     const auto uart = report.find("uart");
     if (uart == report.end() || !report.contains("program")) return {};
     const auto sent = uart->value("sent", std::uint64_t{0});
     if (sent < kLeastAsked || uart->value("received", std::uint64_t{0}) > 0) return {};
-    return fmt::format(
-        "sent {} bytes and never received one: was {} when the program began to speak ('start' "
-        "in the scenario)?",
-        sent,
-        node == "coordinator.linux" ? "the radio module ready, its rate that of the port" : "the PIC ready");
+    return silence_text(node, sent, outcome);
 }
 
 /// The board's own words, where it reports them.
@@ -49,6 +53,17 @@ std::string hang_of(const json& report) {
 
 }  // namespace
 
+std::string silence_text(const std::string& node, std::uint64_t sent, const cosim::Outcome& outcome) {
+    const std::string text = fmt::format("sent {} bytes and never received one: ", sent);
+    if (is_off_rate(node, outcome))
+        return text + "its port is not set to the rate of the line (cfsetspeed(), stty; the UART2 of a main "
+                      "board has 115200 baud)";
+    return text + fmt::format("was {} when the program began to speak ('start' in the scenario)?",
+                              node == "coordinator.linux"
+                                  ? "the radio module ready, its rate that of the port"
+                                  : "the PIC ready");
+}
+
 std::vector<Failure> failures_of(const RunSetup& setup, const std::vector<std::string>& allowed,
                                  const cosim::Outcome& outcome) {
     std::vector<Failure> failures;
@@ -63,7 +78,8 @@ std::vector<Failure> failures_of(const RunSetup& setup, const std::vector<std::s
         if (report.value("ended_badly", false))
             add(node.name, "program",
                 fmt::format("{} {}", report.value("program", ""), report.value("end", "")));
-        if (!has_fault(setup, node.name)) add(node.name, "silent_line", silence_of(node.name, report));
+        if (!has_fault(setup, node.name))
+            add(node.name, "silent_line", silence_of(node.name, report, outcome));
         add(node.name, "hung", hang_of(report));
     }
     return failures;

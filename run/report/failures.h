@@ -5,6 +5,7 @@
 #include "cosim/conductor.h"
 #include "run/description/run_setup.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct Failure {
     std::string text;
     bool allowed = false;
 };
+
+/// What is said of a Linux program whose serial port was silent towards it, and why that may be.
+std::string silence_text(const std::string& node, std::uint64_t sent, const cosim::Outcome& outcome);
 
 /// `allowed`: kinds. In the order of nodes. A program that ended badly behind its end signal; a program that
 /// sent on its serial line and never got a byte back, where no fault is on that line; a board whose program

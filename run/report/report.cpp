@@ -1,4 +1,5 @@
 #include "run/report/report.h"
+#include "run/report/failures.h"
 
 #include "base/error.h"
 #include "run/plan/state_plan.h"
@@ -96,7 +97,7 @@ ordered_json events_of(const ordered_json& nodes) {
 }
 
 /// What a Linux program's counters say that its user should hear.
-void add_linux_warnings(const std::string& name, const ordered_json& node,
+void add_linux_warnings(const std::string& name, const ordered_json& node, const cosim::Outcome& outcome,
                         std::vector<std::string>& warnings) {
     if (!node.contains("program")) return;
     const auto count = [&](const char* port, const char* what) -> std::uint64_t {
@@ -104,12 +105,7 @@ void add_linux_warnings(const std::string& name, const ordered_json& node,
         return found == node.end() ? 0 : found->value(what, std::uint64_t{0});
     };
     if (count("uart", "sent") > 0 && count("uart", "received") == 0)
-        warnings.push_back(fmt::format("{}: sent {} bytes and never received one: was {} when the program "
-                                       "began to speak ('start' in the scenario)?",
-                                       name, count("uart", "sent"),
-                                       name == "coordinator.linux"
-                                           ? "the radio module ready, its rate that of the port"
-                                           : "the PIC ready"));
+        warnings.push_back(name + ": " + silence_text(name, count("uart", "sent"), outcome));
     if (const auto failed = count("i2c", "failed"); failed > 0)
         warnings.push_back(fmt::format("{}: {} of {} I2C transfers failed (the bus's log has the addresses)",
                                        name, failed, count("i2c", "transfers")));
@@ -150,7 +146,7 @@ std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome
     warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
     for (const auto& node : outcome.nodes) {
         const ordered_json json = node_json(node);
-        add_linux_warnings(node.name, json, warnings);
+        add_linux_warnings(node.name, json, outcome, warnings);
         if (!json.contains("warnings")) continue;
         for (const auto& warning : json["warnings"])
             warnings.push_back(fmt::format(

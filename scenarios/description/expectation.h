@@ -26,6 +26,7 @@ struct Expectation {
     using FieldValue = std::variant<bool, std::int64_t, double, std::string>;
     Kind kind = Kind::Log;
     std::string name;     ///< for people: the table's, or made from its keys
+    std::string stated;   ///< what the keys say, where the table has a name of its own
     std::string place;    ///< of the table: "line 12"
     std::string subject;  ///< node, link or robot; Frame: the protocol
     std::string from{};   ///< Line, Frame: node that sends; empty: any

@@ -157,7 +157,10 @@ Expectation read_expectation(const Reader& top, const TomlValue& value, std::siz
     }
     if (expected.after > 0.0) expected.name += fmt::format(", after {:g} s", expected.after);
     if (std::isfinite(expected.by)) expected.name += fmt::format(", by {:g} s", expected.by);
-    expected.name = table.text("name", expected.name);
+    if (table.has("name")) {
+        expected.stated = expected.name;
+        expected.name = table.text("name");
+    }
     table.finish();
     return expected;
 }

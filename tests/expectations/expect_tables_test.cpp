@@ -58,6 +58,7 @@ TEST_CASE("an expectation is a table of one of seven kinds, with a name made fro
     CHECK_FALSE(all[2].region.holds({0.65, 0.15}));
     CHECK(std::isinf(all[2].by));
     CHECK(all[3].name == "it stays up");
+    CHECK(all[3].stated == "robot0.pic starts once");
     CHECK(all[3].place == "line 24");
     CHECK(all[4].name == "robot0.pic never has U2STA.OERR == 1");
     CHECK(all[4].every == Approx(1e-5));

@@ -17,7 +17,7 @@ def commands_of(text):
     """Indented lines that are commands, without their remarks."""
     found = []
     for line in re.sub(r"```.*?```", "", text, flags=re.DOTALL).splitlines():
-        if re.match(r"    (puckloop|cd|python3|tail) ", line):
+        if re.match(r"    (puckloop|cd|python3|tail|sed) ", line):
             found.append(re.sub(r"\s{2,}# .*$", "", line[4:]) if "Ctrl-C" not in line else "")
     return [line for line in found if line]
 
@@ -83,7 +83,7 @@ class Pages(InFolder):
 
     def test_own_firmware(self):
         self.check_page("own_firmware.md", 5)
-        self.assertIn("its clock runs", (self.folder / "blinker/results.xml").read_text())
+        self.assertIn("its clock runs", (self.folder / "results.xml").read_text())
 
     def test_lost_frames(self):
         self.check_page("lost_frames.md", 5)

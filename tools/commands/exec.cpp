@@ -84,8 +84,8 @@ std::string guess_board(const std::string& image) {
     if (image.empty())
         throw InputError("", "exec", "no board is on the bench", "an image, --mcu CHIP or --board BOARD");
     const std::string board = exec::board_for(image);
-    fmt::print(stderr, "puckloop: {} is for the {}: --board {}\n", image, exec::defaults_of("", board).mcu,
-               board);
+    fmt::print(stderr, "puckloop: note: {} is for the {}: --board {}\n", image,
+               exec::defaults_of("", board).mcu, board);
     return board;
 }
 

@@ -9,6 +9,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+#include "tools/guide/scenario_name.h"
 
 #include <fmt/format.h>
 
@@ -69,6 +70,7 @@ void declare_campaign(Command& faults, const std::shared_ptr<FaultsOptions>& opt
     command->add_flag("--fresh", campaign.fresh, "drop the results that are in the folder and begin again");
     command->callback([options] {
         need(options->campaign.file, "faults campaign", "a campaign file");
+        options->campaign.file = campaign_named(options->campaign.file);
         faults::run_campaign(options->campaign);
     });
 }

@@ -114,7 +114,7 @@ int list_parameters(const RunRequest& request) {
 int run_scenario_file(RunOptions& options) {
     RunRequest& request = options.request;
     request.scenario = scenario_named(request.scenario);
-    request.mission = scenario_named(request.mission);
+    request.mission = mission_named(request.mission);
     if (options.list_parameters) return list_parameters(request);
     if (request.scenario.empty() && request.from.empty())
         throw InputError("", "run", "no scenario given", "a file such as scenarios/hello.toml");
@@ -141,8 +141,8 @@ int run_scenario_file(RunOptions& options) {
     if (argos::is_experiment(request.scenario) && request.linux_command.empty())
         fmt::print(
             stderr,
-            "{}: the simulator's controllers are not executed: robots have no program (expected --linux "
-            "PROGRAM, built for the real robot)\n",
+            "{}: note: nobody drives: the simulator's controllers are not executed, and no --linux PROGRAM "
+            "(built for the real robot) is given\n",
             request.scenario.string());
     const cosim::InterruptGuard interrupt;
     if (setup.ready > 0)

@@ -38,6 +38,15 @@ std::string image_named(const std::string& given) {
     return shipped.empty() ? given : shipped.string();
 }
 
+std::filesystem::path mission_named(const std::filesystem::path& given) {
+    const std::filesystem::path own = shipped_in("scenarios/missions/", given);
+    return own == given ? scenario_named(given) : own;
+}
+
+std::filesystem::path campaign_named(const std::filesystem::path& given) {
+    return shipped_in("campaigns/", given);
+}
+
 std::filesystem::path experiment_named(const std::filesystem::path& given) {
     return shipped_in("scenarios/experiments/", given);
 }

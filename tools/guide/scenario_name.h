@@ -13,6 +13,10 @@ std::filesystem::path scenario_named(const std::filesystem::path& given);
 /// The same of an experiment file ("aggregation_machine", "scenarios/experiments/aggregation.toml").
 std::filesystem::path experiment_named(const std::filesystem::path& given);
 
+/// The same of a file with [mission] ("foraging"; a scenario has one too) and of a campaign ("own").
+std::filesystem::path mission_named(const std::filesystem::path& given);
+std::filesystem::path campaign_named(const std::filesystem::path& given);
+
 /// The same of a firmware image ("epuck.hex", "tam.elf").
 std::string image_named(const std::string& given);
 
