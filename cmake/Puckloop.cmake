@@ -68,6 +68,14 @@ function(puckloop_unity name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${PUCKLOOP_UNITY} UNITY_BUILD_BATCH_SIZE ${PUCKLOOP_UNITY_SOURCES})
 endfunction()
 
+# What reads input, writes reports or is a command, but carries out no node's time: optimising it less costs nobody, and saves
+# a quarter of its compilation.
+function(puckloop_cold)
+  foreach(name ${ARGN})
+    target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
+  endforeach()
+endfunction()
+
 # puckloop_library(NAME SOURCES a.cpp b.cpp [LINK libraries...])
 function(puckloop_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <regex>
 
 namespace puckloop::faults {
 
@@ -86,8 +85,16 @@ bool is_stall(const std::string& why) {
 
 /// Paths by their last part alone: where a program lies is no symptom.
 std::string without_folders(const std::string& text) {
-    static const std::regex kFolders("/[^ ,:;]*/");
-    return std::regex_replace(text, kFolders, "");
+    std::string left;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::size_t end = std::min(text.find_first_of(" ,:;", i), text.size());
+        const std::size_t last = end > i ? text.rfind('/', end - 1) : i;
+        if (text[i] == '/' && last > i)
+            i = last;
+        else
+            left += text[i];
+    }
+    return left;
 }
 
 struct Judge {

@@ -18,8 +18,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <random>
-#include <regex>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::tools {
@@ -60,16 +62,28 @@ bool is_dead(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
+/// Of a private folder's name, "puckloop-PROCESS-TOKEN"; none: it is another folder's.
+std::optional<pid_t> maker_of(std::string_view name) {
+    constexpr std::string_view kBegin = "puckloop-", kDigits = "0123456789";
+    constexpr std::size_t kLongestNumber = 9, kToken = 16;
+    if (!name.starts_with(kBegin)) return std::nullopt;
+    name.remove_prefix(kBegin.size());
+    const std::size_t digits = std::min(name.find('-'), name.size());
+    if (digits == 0 || digits > kLongestNumber || name.size() != digits + 1 + kToken ||
+        name.substr(0, digits).find_first_not_of(kDigits) != name.npos ||
+        name.substr(digits + 1).find_first_not_of("0123456789abcdef") != name.npos)
+        return std::nullopt;
+    return std::stoi(std::string(name.substr(0, digits)));
+}
+
 /// Private folders of runs that were killed, wherever their results are: this user's, of a process that is
 /// gone, with nothing in them but sockets that nobody listens to.
 void remove_left_over_folders(const fs::path& place) {
-    static const std::regex kName("puckloop-([0-9]{1,9})-[0-9a-f]{16}");
     std::error_code failed;
     std::vector<fs::path> left;
     for (fs::directory_iterator at(place, failed), end; !failed && at != end; at.increment(failed)) {
-        std::smatch found;
-        const std::string name = at->path().filename().string();
-        if (std::regex_match(name, found, kName) && is_dead(std::stoi(found[1]))) left.push_back(at->path());
+        const std::optional<pid_t> maker = maker_of(at->path().filename().string());
+        if (maker && is_dead(*maker)) left.push_back(at->path());
     }
     for (const fs::path& folder : left) {
         struct stat status {};

@@ -11,7 +11,7 @@
 #include <string>
 
 using Catch::Contains;
-using puckloop::tests::Result;
+using puckloop::tests::Ran;
 using puckloop::tests::run_puckloop;
 
 namespace {
@@ -67,7 +67,7 @@ TEST_CASE("AVR source, listing and image go in a circle") {
     REQUIRE(run_puckloop("asm" + kMcu + text + " -o " + second).status == 0);
     CHECK(content_of(first) == content_of(second));
     CHECK_THAT(content_of(text), Contains("lds r17, 0x00c0"));
-    const Result list = run_puckloop("asm" + kMcu + source + " --format list");
+    const Ran list = run_puckloop("asm" + kMcu + source + " --format list");
     CHECK_THAT(list.output, Contains("00000: 08 e0"));
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("words, single steps and mistakes") {
     CHECK_THAT(run_puckloop("disasm" + kMcu + "--words 940e,0046,9519").output,
                Contains("call 0x8c") && Contains(".word 0x9519"));
     CHECK(run_puckloop("disasm" + kMcu + "--words 12345").status == 2);
-    const Result chip = run_puckloop("asm --mcu atmega328p /dev/null");
+    const Ran chip = run_puckloop("asm --mcu atmega328p /dev/null");
     CHECK(chip.status == 2);
     CHECK_THAT(chip.output, Contains("unknown chip \"atmega328p\"") && Contains("atmega1284p"));
     CHECK_THAT(run_puckloop("step --mcu atmega328p < /dev/null").output, Contains("atmega1284p"));
@@ -87,15 +87,15 @@ TEST_CASE("exec runs a program with its USART at a script's end, and stops where
     REQUIRE(run_puckloop("asm" + kMcu + folder.file("echo.s", kEcho) + " -o " + hex).status == 0);
     const std::string script = folder.file("in.txt", "0.001 41 42 59\n");
     const std::string logs = folder.file("logs");
-    const Result run = run_puckloop("exec" + kMcu + hex + " --uart1 script:" + script +
-                                    " --stop-at 0x22 --seconds 1 --json --log " + logs);
+    const Ran run = run_puckloop("exec" + kMcu + hex + " --uart1 script:" + script +
+                                 " --stop-at 0x22 --seconds 1 --json --log " + logs);
     CHECK(run.status == 0);
     CHECK_THAT(run.output, Contains("\"stopped\":\"0x22\"") && Contains("\"sent\":2") &&
                                Contains("\"received\":3") && Contains("\"cause\":\"power-on\"") &&
                                Contains("\"unmodelled\":[]"));
     const std::string log = content_of(logs + "/uart1.csv");
     CHECK_THAT(log, Contains(",rx,"));
-    const Result budget = run_puckloop("exec" + kMcu + hex + " --stop-at 0x22 --seconds 0.1");
+    const Ran budget = run_puckloop("exec" + kMcu + hex + " --stop-at 0x22 --seconds 0.1");
     CHECK(budget.status == 1);
     CHECK_THAT(budget.output, Contains("work: 1600"));
     CHECK(
@@ -137,7 +137,7 @@ end:    rjmp end
     std::string damaged = kept;
     damaged[damaged.size() - 20] ^= 1;
     folder.file("count.nvm", damaged);
-    const Result refused = run_puckloop(command);
+    const Ran refused = run_puckloop(command);
     CHECK(refused.status == 2);
     CHECK_THAT(refused.output, Contains("is damaged"));
 }
@@ -152,17 +152,17 @@ TEST_CASE("exec: fuses, supply and what no model is behind, of an AVR") {
     };
     CHECK_THAT(run("--fuses 0x62,0xD9,0xFF").output, Contains("work: 1000"));
     for (const char* wrong : {"--fuses 0x62", "--fuses 0x62,0xD9,0x1FF", "--fuses 62,D9,FF", "--fosc 0xFF"}) {
-        const Result result = run(wrong);
+        const Ran result = run(wrong);
         CHECK(result.status == 2);
         CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
     }
     CHECK(run_puckloop("exec --mcu dspic30f6014a " + hex + " --fuses 0xFF,0xD9,0xFD").status == 2);
-    const Result strict = run("--strict");
+    const Ran strict = run("--strict");
     CHECK(strict.status == 1);
     CHECK_THAT(strict.output, Contains("writes OSCCAL, which no model is behind"));
     const std::string stimulus =
         folder.file("supply.txt", "0.002 vcc 2\n0.003 vcc 5\n0.005 vcc 0\n0.006 vcc 3.3\n");
-    const Result supply = run("--json --stimulus " + stimulus);
+    const Ran supply = run("--json --stimulus " + stimulus);
     CHECK_THAT(supply.output, Contains("\"time_s\":0.0020020625,\"cause\":\"brown-out\"") &&
                                   Contains("\"time_s\":0.005,\"cause\":\"power-on\""));
 }
@@ -214,7 +214,7 @@ over:   lds  r17, TWCR
         ret
 )");
     REQUIRE(run_puckloop("asm" + kMcu + source + " -o " + hex).status == 0);
-    const Result run =
+    const Ran run =
         run_puckloop("exec" + kMcu + hex + " --seconds 0.02 --i2c-device ground --json --log " + logs);
     INFO(run.output);
     CHECK(run.status == 0);
@@ -223,7 +223,7 @@ over:   lds  r17, TWCR
     CHECK(run_puckloop("exec" + kMcu + hex +
                        " --seconds 0.02 --i2c-device turret@0x60 --i2c-device ground@0x62 --strict")
               .status == 0);
-    const Result strict = run_puckloop("exec" + kMcu + hex + " --seconds 0.02 --i2c-device ground --strict");
+    const Ran strict = run_puckloop("exec" + kMcu + hex + " --seconds 0.02 --i2c-device ground --strict");
     CHECK(strict.status == 1);
     CHECK_THAT(strict.output, Contains("addressed 0x62 on the two-wire bus, and nobody acknowledged"));
     std::string said;
@@ -236,8 +236,8 @@ over:   lds  r17, TWCR
 #ifdef AVR_PROGRAMS
     const std::string script =
         folder.file("script.txt", "0.001 w 0x00 03 a1 b2 c3\n0.005 r 0x00 3 3\n0.01 w 0x11 01\n");
-    const Result slave = run_puckloop("exec" + kMcu + AVR_PROGRAMS +
-                                      "/twi_slave.elf --seconds 0.02 --json --i2c script:" + script);
+    const Ran slave = run_puckloop("exec" + kMcu + AVR_PROGRAMS +
+                                   "/twi_slave.elf --seconds 0.02 --json --i2c script:" + script);
     INFO(slave.output);
     CHECK(slave.status == 0);
     CHECK_THAT(slave.output, Contains("\"bytes\":\"a1 b2 c3\"") && Contains("\"addresses_refused\":1") &&
@@ -248,7 +248,7 @@ over:   lds  r17, TWCR
 TEST_CASE("an image for another chip, cut short or past the flash is refused in one line") {
     const Folder folder;
     const auto refused = [&](const std::string& file, const std::string& why) {
-        const Result result = run_puckloop("exec" + kMcu + file + " --seconds 0.01");
+        const Ran result = run_puckloop("exec" + kMcu + file + " --seconds 0.01");
         INFO(result.output);
         CHECK(result.status == 2);
         CHECK_THAT(result.output, Contains(why));
@@ -270,7 +270,7 @@ TEST_CASE("an image for another chip, cut short or past the flash is refused in 
         refused(folder.file("1281.elf", named), "is for the atmega1281x (expected atmega1284p)");
     }
     refused(folder.file("cut.elf", elf.substr(0, 700)), "puckloop:");
-    const Result main = run_puckloop("exec" + kMcu + AVR_PROGRAMS "/compute-Os.elf --stop-at main --json");
+    const Ran main = run_puckloop("exec" + kMcu + AVR_PROGRAMS "/compute-Os.elf --stop-at main --json");
     CHECK(main.status == 0);
     CHECK_THAT(main.output, Contains("\"symbol\":\"main\""));
     CHECK_THAT(run_puckloop("disasm" + kMcu + AVR_PROGRAMS "/compute-Os.elf --start main").output,

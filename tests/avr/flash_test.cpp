@@ -4,7 +4,7 @@
 #include "emu/avr/chip/chip_faults.h"
 #include "emu/image/avr_image.h"
 #include "tests/avr/rig.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -4,23 +4,17 @@
 #include "base/random.h"
 #include "emu/avr/devices/device.h"
 #include "emu/image/avr_image.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 
 namespace {
-
-std::string contents_of(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
 
 std::uint32_t end_of_code(const image::AvrImage& image) {
     return image.symbols.contains("_etext") ? image.symbols.at("_etext").address : 0x1000;
@@ -76,7 +70,7 @@ TEST_CASE("an ELF of avr-gcc names the source line of each address, by stabs and
         CHECK(image.lines.addresses("compute.c", 1).empty());
 
         // Whatever is in the debug sections, the program is read.
-        const std::string bytes = contents_of(elf);
+        const std::string bytes = tests::text_of(elf);
         RandomStream random(3, format);
         for (int i = 0; i < 200; ++i) {
             std::string damaged = bytes;

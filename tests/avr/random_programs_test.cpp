@@ -6,7 +6,7 @@
 #include "emu/image/avr_image.h"
 #include "tests/avr/random_c.h"
 #include "tests/avr/simavr.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

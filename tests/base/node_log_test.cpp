@@ -1,25 +1,17 @@
 #include "base/node_log.h"
 
 #include "base/error.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 
-namespace {
-
-std::string contents(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("lines carry their time, replace an older file and are there before the log is closed") {
     const auto file = puckloop::tests::scratch_path("puckloop-node-log-test.log");
@@ -27,7 +19,7 @@ TEST_CASE("lines carry their time, replace an older file and are there before th
     NodeLog log(file.string());
     log.line(17.630123, "robot0 touches carton");
     log.line(1234567.0, "late");
-    CHECK(contents(file) == "[   17.630123 s] robot0 touches carton\n[1234567.000000 s] late\n");
+    CHECK(tests::text_of(file) == "[   17.630123 s] robot0 touches carton\n[1234567.000000 s] late\n");
     std::filesystem::remove(file);
 }
 

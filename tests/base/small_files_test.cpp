@@ -7,7 +7,7 @@
 #include "base/plain_text.h"
 #include "base/quantile.h"
 #include "base/text_file.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

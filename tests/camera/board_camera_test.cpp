@@ -4,7 +4,7 @@
 #include "base/checkpoint.h"
 #include "emu/pic/pic_node.h"
 #include "tests/camera/random_picture.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 

@@ -5,7 +5,7 @@
 #include "campaigns/engine/campaign_file.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/plan.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

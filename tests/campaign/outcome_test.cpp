@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/engine/outcome.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

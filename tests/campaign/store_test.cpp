@@ -5,7 +5,7 @@
 #include "campaigns/engine/store.h"
 #include "campaigns/engine/table.h"
 #include "campaigns/jobs/result_files.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -7,7 +7,7 @@
 #include "linuxboard/coordinator/gantt.h"
 #include "tests/coordinator/virtual_line.h"
 #include "tests/coordinator/visits.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,7 +3,8 @@
 
 #include "linuxboard/coordinator/event_log.h"
 #include "tests/coordinator/simulated_mesh.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -16,7 +17,6 @@
 #include <fstream>
 #include <poll.h>
 #include <pty.h>
-#include <sstream>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -31,13 +31,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 /// A pty whose other end is the program's port.
@@ -121,7 +114,7 @@ struct Program {
         REQUIRE(pid < 0);
         return status;
     }
-    std::string error() const { return text_of(folder / "stderr"); }
+    std::string error() const { return tests::text_of(folder / "stderr"); }
     std::vector<Event> events() const { return read_events((folder / "tam_events.csv").string()); }
 };
 
@@ -186,7 +179,7 @@ TEST_CASE("two TAMs at a pty: discovery, a task, the end by SIGINT, LEDs off, ta
     CHECK(has(events, "TAM01", "task", "done"));
     CHECK(has(events, "TAM01", "robot", "out"));
     CHECK(has(events, "", "ended", "signal"));
-    const std::string picture = text_of(program.folder / "tam_gantt.svg");
+    const std::string picture = tests::text_of(program.folder / "tam_gantt.svg");
     CHECK(picture.starts_with("<svg"));
     CHECK(picture.find("TAM13") != std::string::npos);
     CHECK(picture.find("work on") != std::string::npos);
@@ -208,7 +201,7 @@ TEST_CASE("a killed program leaves a table that can be read, and drawn") {
     CHECK_FALSE(std::filesystem::exists(program.folder / "tam_gantt.svg"));
     Program drawing({"--draw", (program.folder / "tam_events.csv").string()}, "draw");
     REQUIRE(drawing.wait() == 0);
-    CHECK(text_of(drawing.folder / "tam_gantt.svg").find("TAM01") != std::string::npos);
+    CHECK(tests::text_of(drawing.folder / "tam_gantt.svg").find("TAM01") != std::string::npos);
 }
 
 TEST_CASE("peers that are dead, flood, or send garbage end the program with port and step") {

@@ -5,15 +5,14 @@
 #include "linuxboard/shim/node/linux_node.h"
 #include "protocols/uart_sampling.h"
 #include "tests/coordinator/simulated_mesh.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <deque>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::coordinator;
@@ -30,13 +29,6 @@ struct Run {
     double simulated = 0;
     bool success = false;
 };
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 /// 40 s of random-task with two TAMs and a robot; grants of `slice`, at most the 9 bits that a byte takes.
 Run perform(Time slice, const std::string& seed, bool wind_up) {
@@ -97,8 +89,8 @@ Run perform(Time slice, const std::string& seed, bool wind_up) {
         if (const auto stop = node.stop()) run.success = stop->success;
         run.report = node.finish();
     }
-    run.table = text_of(folder / "tam_events.csv");
-    run.picture = text_of(folder / "tam_gantt.svg");
+    run.table = tests::text_of(folder / "tam_events.csv");
+    run.picture = tests::text_of(folder / "tam_gantt.svg");
     std::filesystem::remove_all(folder);
     return run;
 }

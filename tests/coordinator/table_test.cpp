@@ -5,7 +5,7 @@
 #include "linuxboard/coordinator/event_log.h"
 #include "linuxboard/coordinator/experiments/experiments.h"
 #include "linuxboard/coordinator/gantt.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -9,7 +9,7 @@
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/devices/device.h"
 #include "tests/crashes/crash_image.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 #include "tests/tools/shell.h"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 #include "tests/crashes/crash_image.h"
 
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <elf.h>
 

@@ -10,7 +10,7 @@
 #include "emu/image/image_file.h"
 #include "emu/image/line_table.h"
 #include "tests/crashes/crash_image.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 #include "tests/tools/shell.h"
 
 #include <catch2/catch.hpp>

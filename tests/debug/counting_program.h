@@ -1,7 +1,7 @@
 #pragma once
 // A main board's program that counts, for tests of debuggers, and numbers drawn for it.
 
-#include "tests/dspic_pieces.h"
+#include "tests/kit/dspic_pieces.h"
 
 #include <random>
 #include <string>

@@ -1,6 +1,6 @@
 #include "base/error.h"
 #include "emu/dspic/assembler/assembler.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // carrier, A/D handshake, SPI, DMA, self-programming, interrupts.
 
 #include "tests/dspic/chip33_bench.h"
-#include "tests/dspic33_pieces.h"
+#include "tests/kit/dspic33_pieces.h"
 
 #include <catch2/catch.hpp>
 

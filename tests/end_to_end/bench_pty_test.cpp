@@ -1,8 +1,8 @@
 // `puckloop exec --uart1 pty` as a terminal program meets it: the pace and the rate of a wire.
 
-#include "tests/dspic_pieces.h"
 #include "tests/end_to_end/live_line.h"
 #include "tests/end_to_end/workbench.h"
+#include "tests/kit/dspic_pieces.h"
 
 #include <catch2/catch.hpp>
 

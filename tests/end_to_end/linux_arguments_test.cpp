@@ -1,11 +1,13 @@
 // `--linux PROGRAM [ARG]...`: which words are the program's.
 
 #include "run/plan/linux_arguments.h"
+#include "tests/kit/shell.h"
 
 #include <catch2/catch.hpp>
 
-#include <cstdio>
+#include <sstream>
 #include <string>
+#include <vector>
 
 using puckloop::tools::pack_linux_arguments;
 using Words = std::vector<std::string>;
@@ -46,12 +48,9 @@ TEST_CASE("empty arguments and arguments with spaces or = arrive whole") {
 }
 
 TEST_CASE("every option of run's help is known to end the program's arguments") {
-    std::FILE* help = popen(PUCKLOOP_PROGRAM " run --help", "r");
-    REQUIRE(help != nullptr);
+    std::istringstream help(puckloop::tests::run_in_shell(PUCKLOOP_PROGRAM " run --help").output);
     int seen = 0;
-    char line[4096];
-    while (std::fgets(line, sizeof line, help)) {
-        const std::string text = line;
+    for (std::string text; std::getline(help, text);) {
         const auto at = text.find("--");
         // An option's own line begins with it, perhaps behind a short name.
         if (at == std::string::npos || text.find_first_not_of(' ') + 3 < at) continue;
@@ -61,6 +60,5 @@ TEST_CASE("every option of run's help is known to end the program's arguments") 
         CHECK(pack_linux_arguments({"--linux", "p", option}).back().starts_with(option));
         ++seen;
     }
-    pclose(help);
     CHECK(seen > 10);
 }

@@ -1,5 +1,7 @@
 #include "tests/end_to_end/process.h"
 
+#include "tests/kit/files.h"
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -29,11 +31,6 @@ bool alive(char state) {
 }
 
 }  // namespace
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

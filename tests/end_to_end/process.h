@@ -1,6 +1,8 @@
 #pragma once
 // A process under test: started, waited for with a time limit, signalled; nothing of it outlives the test.
 
+#include "tests/kit/files.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -50,7 +52,6 @@ bool runs(pid_t process);
 /// None of them runs any more, at the latest after `limit` wall-clock seconds: what a killed run leaves ends
 /// by itself, when it sees that its conductor is gone.
 bool all_end(const std::vector<pid_t>& processes, double limit = 10.0);
-std::string text_of(const std::filesystem::path& file);
 double wall_seconds();
 
 }  // namespace puckloop::tests

@@ -1,8 +1,8 @@
 // Robots that hear each other in a run: what one plays through its codec, others read at their microphones.
 
-#include "tests/dspic_pieces.h"
 #include "tests/end_to_end/workbench.h"
-#include "tests/sound_player.h"
+#include "tests/kit/dspic_pieces.h"
+#include "tests/kit/sound_player.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,7 @@
 #include "tests/exec/command.h"
 
 #include "emu/image/intel_hex.h"
+#include "tests/kit/files.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,11 +12,6 @@
 #include <iterator>
 
 namespace puckloop::exec {
-
-std::string text_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 bool one_line(const std::string& text) {
     return !text.empty() && text.find('\n') == text.size() - 1;

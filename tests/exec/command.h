@@ -3,6 +3,7 @@
 
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/devices/device.h"
+#include "tests/kit/files.h"
 
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ struct Outcome {
     std::string err;
 };
 
-std::string text_of(const std::string& path);
+using tests::text_of;
 /// Exactly one line, and not an empty one.
 bool one_line(const std::string& text);
 

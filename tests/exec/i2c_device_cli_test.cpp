@@ -1,7 +1,7 @@
 // Devices on the bus of a target that is its master, and what is recorded of a bus with nobody on it.
 
-#include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
+#include "tests/kit/dspic_pieces.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

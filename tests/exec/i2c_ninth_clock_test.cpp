@@ -4,8 +4,8 @@
 // (dsPIC30F Family Reference Manual, DS70068, sections 21.5 to 21.7; UM10204, 3.1.4 to 3.1.6).
 
 #include "base/random.h"
-#include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
+#include "tests/kit/dspic_pieces.h"
 #include "tests/wires/wire_slave.h"
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 // `exec --nvm`: what flash and EEPROM hold lasts from one run to the next. And the reset button.
 
-#include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
+#include "tests/kit/dspic_pieces.h"
 
 #include "emu/dspic/devices/device.h"
 

@@ -1,33 +1,23 @@
 // The project's firmware under sanitizers: drawn inputs find nothing, runs repeat, and a planted fault is
 // found.
 
+#include "tests/kit/shell.h"
+
 #include <catch2/catch.hpp>
 
 #include <array>
-#include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
+using namespace puckloop;
+
 namespace {
 
-struct Outcome {
-    int status = -1;
-    std::string text;
-};
-
-Outcome run(const std::string& command) {
-    Outcome outcome;
-    FILE* pipe = ::popen(("ASAN_OPTIONS=detect_leaks=0 " + command + " 2>&1").c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    std::array<char, 4096> piece{};
-    while (const std::size_t got = std::fread(piece.data(), 1, piece.size(), pipe))
-        outcome.text.append(piece.data(), got);
-    outcome.status = ::pclose(pipe);
-    return outcome;
+tests::Ran run(const std::string& command) {
+    return tests::run_in_shell("ASAN_OPTIONS=detect_leaks=0 " + command);
 }
 
 /// The numbers of one line of the driver's: characters sent, and what else was seen.
@@ -66,10 +56,11 @@ std::string input_file(const std::string& bytes) {
 TEST_CASE("drawn inputs find nothing in the project's firmware") {
     const auto seed = std::to_string(Catch::rngSeed());
     for (const auto& [name, inputs] : {std::pair{"epuck_ircom", 60}, {"rab", 40}, {"tam", 25}}) {
-        const Outcome outcome = run(hosted(name) + " --seed " + seed + " --inputs " + std::to_string(inputs));
-        INFO(name << " --seed " << seed << "\n" << outcome.text.substr(0, 3000));
+        const tests::Ran outcome =
+            run(hosted(name) + " --seed " + seed + " --inputs " + std::to_string(inputs));
+        INFO(name << " --seed " << seed << "\n" << outcome.output.substr(0, 3000));
         REQUIRE(outcome.status == 0);
-        const auto all = lines(outcome.text);
+        const auto all = lines(outcome.output);
         REQUIRE(all.size() == static_cast<std::size_t>(inputs));
         unsigned long answering = 0;
         for (const Seen& seen : all)
@@ -85,11 +76,11 @@ TEST_CASE("a session on the host has the records of the protocol") {
         input.insert(input.end(), {2, speed, 1, speed, 0, 4 | 19 << 3});
     const std::string bytes(input.begin(), input.end());
     const std::string file = input_file(bytes);
-    const Outcome outcome = run(hosted("epuck_ircom") + " " + file);
+    const tests::Ran outcome = run(hosted("epuck_ircom") + " " + file);
     ::unlink(file.c_str());
-    INFO(outcome.text);
+    INFO(outcome.output);
     REQUIRE(outcome.status == 0);
-    const auto all = lines(outcome.text);
+    const auto all = lines(outcome.output);
     REQUIRE(all.size() == 1);
     CHECK(all[0].characters == 4u * 72u);
     CHECK(all[0].others > 40);  // wheels' steps, LEDs
@@ -101,18 +92,18 @@ TEST_CASE("a planted fault is found, with its place") {
     for (int i = 0; i < 6; ++i)
         bytes += std::string(1, static_cast<char>(2 | 31 << 3)) + std::string(47, 'x');
     const std::string file = input_file(bytes);
-    const Outcome sound = run(hosted("tam") + " " + file);
-    const Outcome planted = run(PUCKLOOP_PLANTED " " + file);
+    const tests::Ran sound = run(hosted("tam") + " " + file);
+    const tests::Ran planted = run(PUCKLOOP_PLANTED " " + file);
     ::unlink(file.c_str());
     CHECK(sound.status == 0);
-    INFO(planted.text.substr(0, 2000));
+    INFO(planted.output.substr(0, 2000));
     CHECK(planted.status != 0);
-    CHECK(planted.text.find("planted_radio.c") != std::string::npos);
-    CHECK(planted.text.find("runtime error") != std::string::npos);
+    CHECK(planted.output.find("planted_radio.c") != std::string::npos);
+    CHECK(planted.output.find("runtime error") != std::string::npos);
 }
 
 TEST_CASE("an input that cannot be read is one line and status 2") {
-    const Outcome outcome = run(hosted("rab") + " /nonexistent/input");
-    CHECK(WEXITSTATUS(outcome.status) == 2);
-    CHECK(outcome.text == "puckloop: /nonexistent/input: cannot be read\n");
+    const tests::Ran outcome = run(hosted("rab") + " /nonexistent/input");
+    CHECK(outcome.status == 2);
+    CHECK(outcome.output == "puckloop: /nonexistent/input: cannot be read\n");
 }

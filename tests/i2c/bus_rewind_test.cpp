@@ -5,24 +5,16 @@
 #include "base/random.h"
 #include "bus_outside.h"
 #include "cosim/i2c/i2c_bus.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
-
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
 using namespace puckloop::tests;
 
 namespace {
-
-std::string text_of(const std::string& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
 
 bool same_future(const Node& a, const Node& b) {
     for (PortIndex port = 0; port <= kWorld; ++port)

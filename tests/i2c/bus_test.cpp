@@ -6,7 +6,7 @@
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/i2c_devices/signals.h"
 #include "physics/description/channels.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

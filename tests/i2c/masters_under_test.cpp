@@ -6,7 +6,7 @@
 #include "emu/pic/pic_node.h"
 #include "linuxboard/shim/devices/i2c_adapter.h"
 #include "tests/avr/rig.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "emu/dspic/devices/device.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 #include <cerrno>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "emu/image/image.h"
 #include "emu/image/line_table.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,7 +3,7 @@
 #include "emu/image/intel_hex.h"
 #include "tests/image/build_images.h"
 #include "tests/image/expect_error.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -6,13 +6,12 @@
 #include "physics/world/pose_signals.h"
 #include "protocols/ircom.h"
 #include "tests/ircom/faults.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::ircom_test;
@@ -100,12 +99,6 @@ std::vector<cosim::CarriedFault> every_fault() {
     return carried(specs);
 }
 
-std::string text_of(const std::string& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
 }  // namespace
 
 TEST_CASE("IRcom's medium goes back, and keeps what it promised of its ports") {
@@ -178,8 +171,8 @@ TEST_CASE("IRcom's medium goes back, and keeps what it promised of its ports") {
             back.settle();
             CHECK(sent_in_all > 1000);
             CHECK(node.finish() == twin.finish());
-            CHECK(text_of(file) == text_of(twin_file));
-            CHECK(text_of(file).size() > 200);
+            CHECK(tests::text_of(file) == tests::text_of(twin_file));
+            CHECK(tests::text_of(file).size() > 200);
             const auto report = nlohmann::json::parse(twin.finish());
             int fired = 0;
             for (std::size_t f = 0; faults && f < report["faults"].size(); ++f)

@@ -6,7 +6,7 @@
 #include "physics/world/pose_signals.h"
 #include "protocols/ircom.h"
 #include "tests/ircom/worlds.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

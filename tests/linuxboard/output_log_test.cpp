@@ -1,7 +1,7 @@
 // A program's log is bounded, on disk while it runs as well as at its end.
 
 #include "linuxboard/shim/node/output_log.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 
 #include "base/text_file.h"
 #include "cosim/core/cores.h"
+#include "tests/kit/scratch.h"
 #include "tests/linuxboard/bench.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -4,12 +4,12 @@
 #include "tests/end_to_end/one_line.h"
 #include "tests/end_to_end/same_run.h"
 #include "tests/end_to_end/workbench.h"
+#include "tests/kit/files.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 
 using namespace puckloop::tests;
@@ -28,11 +28,6 @@ std::string team(int robots, const std::string& duration, const std::string& wif
                         "selector = 10\n[robot.linux]\nprogram = [\"{}\", \"--server\", \"manager:7700\"]\n",
                         30 * i - 40, PUCKLOOP_FORWARD);
     return text;
-}
-
-std::string file_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::size_t occurrences(const std::string& text, const std::string& what) {
@@ -86,9 +81,9 @@ TEST_CASE("robots wander, say hello to all and answer who asks them by number", 
     }
     check_same_run(bench, "here", "apart");
     check_same_run(bench, "here", "two");
-    CHECK(file_text(bench.out("here") / "asker.linux.log") == "1 !one\n2 !two\n");
+    CHECK(text_of(bench.out("here") / "asker.linux.log") == "1 !one\n2 !two\n");
     CHECK(journey(bench.csv("here", "trajectory.csv")).length > 0.1);
-    const std::string log = file_text(bench.out("here") / "robot0.pic.log");
+    const std::string log = text_of(bench.out("here") / "robot0.pic.log");
     INFO(log);
     CHECK(occurrences(log, "led0 on") >= 1);  // it heard others
 }
@@ -108,7 +103,7 @@ TEST_CASE("a receive call of the network firmware gives up after 3 s", "[network
     }
     REQUIRE(walks > 2);
     CHECK(lit - walks == Approx(3.0).margin(0.01));
-    CHECK(file_text(bench.out("alone") / "robot0.pic.log").find("led_body off") == std::string::npos);
+    CHECK(text_of(bench.out("alone") / "robot0.pic.log").find("led_body off") == std::string::npos);
 }
 
 TEST_CASE("at a selector below 10 packets go by Bluetooth, to the number that a name has",
@@ -123,8 +118,8 @@ TEST_CASE("at a selector below 10 packets go by Bluetooth, to the number that a 
     const Ended ended = bench.run("air", {bench.file("air.toml", text), "--in-process"});
     INFO(ended.err);
     REQUIRE(ended.status == 0);
-    const std::string one = file_text(bench.out("air") / "robot0.uart2.received"),
-                      two = file_text(bench.out("air") / "robot1.uart2.received");
+    const std::string one = text_of(bench.out("air") / "robot0.uart2.received"),
+                      two = text_of(bench.out("air") / "robot1.uart2.received");
     INFO(one << two);
     CHECK(occurrences(one, "sent 2102") + occurrences(two, "sent 2101") >= 1);
     CHECK(occurrences(two, "heard 2101 hello 0000") == occurrences(one, "sent 2102"));

@@ -3,14 +3,13 @@
 
 #include "base/error.h"
 #include "cosim/faults/node_fault.h"
+#include "tests/kit/files.h"
 #include "tests/network/wifi_kit.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::tests;
@@ -49,13 +48,6 @@ double bianchi(int stations, const Figures& of, double payload_bits) {
     const double good = of.frame + of.sifs + of.ack + of.difs, bad = of.frame + of.difs;
     const double mean = (1 - any) * of.slot + success * good + (any - success) * bad;
     return success * payload_bits / (mean * 1e-6);
-}
-
-std::string text_of(const std::string& file) {
-    std::ifstream in(file);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 std::size_t count_of(const std::string& text, const std::string& what) {

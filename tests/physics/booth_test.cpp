@@ -5,8 +5,8 @@
 #include "physics/description/booth.h"
 #include "physics/node/world_node.h"
 #include "physics/world/booth_record.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -5,15 +5,15 @@
 #include "physics/ir/ir_node.h"
 #include "physics/node/world_node.h"
 #include "physics/world/pose_signals.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/ir_worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -90,15 +90,9 @@ std::vector<Message> run(IrNode& node, std::vector<Message> messages, Time durat
     return all;
 }
 
-std::string contents(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
 std::vector<std::string> rows(const std::filesystem::path& file) {
     std::vector<std::string> lines;
-    std::istringstream text(contents(file));
+    std::istringstream text(tests::text_of(file));
     for (std::string line; std::getline(text, line);)
         lines.push_back(line);
     return lines;
@@ -199,11 +193,11 @@ TEST_CASE("what the medium sends does not depend on how time was granted, and re
         if (first.empty()) {
             first = out;
             report = said;
-            csv = contents(file);
+            csv = tests::text_of(file);
         }
         CHECK(out == first);
         CHECK(said == report);
-        CHECK(contents(file) == csv);
+        CHECK(tests::text_of(file) == csv);
     }
     CHECK(first.size() > 3000);
     std::filesystem::remove_all(folder);

@@ -4,15 +4,14 @@
 
 #include "physics/ir/ir_node.h"
 #include "physics/world/pose_signals.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/ir_worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::physics;
@@ -85,12 +84,6 @@ std::vector<Message> random_inbox(RandomStream& random, Time from, Time until, b
     }
 }
 
-std::string text_of(const std::string& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
 bool same_future(const IrNode& a, const IrNode& b) {
     for (PortIndex port = 0; port <= kWorldPort; ++port)
         if (a.earliest_output(port) != b.earliest_output(port) || a.lookahead(port) != b.lookahead(port))
@@ -116,7 +109,7 @@ TEST_CASE("the medium goes back") {
         for (int i = 0; i < 250; ++i) {
             INFO("mark " << i);
             back.mark();
-            const std::string text = text_of(file);
+            const std::string text = tests::text_of(file);
             for (std::uint64_t times = random.below(3); times > 0; --times) {
                 Time ahead = now;
                 for (std::uint64_t steps = 1 + random.below(3); steps > 0; --steps) {
@@ -125,7 +118,7 @@ TEST_CASE("the medium goes back") {
                     node.advance(until, random_inbox(random, ahead, until, scene), sent);
                     ahead = until;
                 }
-                CHECK(text_of(file) == text);
+                CHECK(tests::text_of(file) == text);
                 back.rewind();
                 REQUIRE(same_future(node, twin));
             }
@@ -143,7 +136,7 @@ TEST_CASE("the medium goes back") {
         }
         CHECK(sent_in_all > 3000);
         CHECK(node.finish() == twin.finish());
-        CHECK(text_of(file) == text_of(twin_file));
+        CHECK(tests::text_of(file) == tests::text_of(twin_file));
         std::filesystem::remove(file);
         std::filesystem::remove(twin_file);
     }

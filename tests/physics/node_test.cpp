@@ -3,14 +3,13 @@
 #include "base/error.h"
 #include "physics/node/world_node.h"
 #include "physics/world/world_log.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::physics;
@@ -79,12 +78,6 @@ std::vector<Message> run(WorldNode& node, Time duration, Time slice) {
     }
 }
 
-std::string contents(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
 struct TemporaryDirectory {
     std::filesystem::path path = puckloop::tests::scratch_path("puckloop-physics-node-test");
     TemporaryDirectory() { std::filesystem::create_directories(path); }
@@ -146,7 +139,7 @@ TEST_CASE("the log has what stands where, contacts and poses, however time was g
             run(node, 4000 * kMillisecond, slice);
             node.finish();
         }
-        const auto text = contents(directory.path / "world.log");
+        const auto text = tests::text_of(directory.path / "world.log");
         CHECK((log.empty() || text == log));
         log = text;
     }
@@ -182,7 +175,7 @@ TEST_CASE("contacts begin and end once, though bodies bounce") {
     drive(500, 1.5);
     drive(-300, 0.6);
     log.end(model);
-    const auto text = contents(directory.path / "world.log");
+    const auto text = tests::text_of(directory.path / "world.log");
     const auto touches = text.find(" s] e1 touches arena wall 1\n");
     INFO(text);
     REQUIRE(touches != std::string::npos);
@@ -197,14 +190,14 @@ TEST_CASE("recordings: rows at the period, readable at any time, refused directo
     world.recording = {directory.path.string(), 0.1};
     WorldNode node(world);
     run(node, 1000 * kMillisecond, 10 * kMillisecond);
-    const auto trajectory = contents(directory.path / "trajectory.csv");  // not finished yet
+    const auto trajectory = tests::text_of(directory.path / "trajectory.csv");  // not finished yet
     CHECK(std::count(trajectory.begin(), trajectory.end(), '\n') == 1 + 11 * 2);
     CHECK(trajectory.rfind("t_s,robot,x_m,y_m,theta_rad\n0.000,e1,0.000000,0.000000,0.000000\n", 0) == 0);
     CHECK(trajectory.find("\n1.000,e2,") != std::string::npos);
-    const auto sensors = contents(directory.path / "sensors.csv");
+    const auto sensors = tests::text_of(directory.path / "sensors.csv");
     CHECK(sensors.rfind("t_s,robot,proximity0,", 0) == 0);
     CHECK(std::count(sensors.begin(), sensors.end(), '\n') == 1 + 11 * 2);
-    CHECK(contents(directory.path / "objects.csv").find("crate") != std::string::npos);
+    CHECK(tests::text_of(directory.path / "objects.csv").find("crate") != std::string::npos);
     world.recording.directory = (directory.path / "absent").string();
     CHECK_THROWS_AS(WorldNode(world), RunError);
     if (std::filesystem::exists("/dev/full")) {

@@ -5,14 +5,14 @@
 #include "physics/render/trajectory_svg.h"
 #include "physics/world/booth_record.h"
 #include "physics/world/recorder.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::physics;
@@ -37,12 +37,6 @@ World furnished() {
     world.patches.push_back(
         {.name = "line", .x = -0.1, .y = 0.1, .heading = 0.6, .length = 0.5, .width = 0.03, .grey = 0.4});
     return world;
-}
-
-std::string contents(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
 }
 
 }  // namespace
@@ -70,7 +64,7 @@ TEST_CASE("a picture shows arena, things, paths and robots, even of a run that d
     }
     std::ofstream(directory / "trajectory.csv", std::ios::app) << "24.100,e1,0.1";  // cut off
     write_trajectory_svg(world, directory);
-    const auto svg = contents(directory / "trajectory.svg");
+    const auto svg = tests::text_of(directory / "trajectory.svg");
     CHECK(svg.rfind("<svg ", 0) == 0);
     CHECK(svg.find("nan") == std::string::npos);
     for (const char* word : {"carton", "crate", "can", "lamp", "&lt;e2&gt;", "20 s", "metres",

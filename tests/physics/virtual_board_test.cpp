@@ -4,9 +4,9 @@
 #include "physics/ir/ir_node.h"
 #include "physics/world/pose_signals.h"
 #include "protocols/rab_frame.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/events/plans.h"
 #include "tests/physics/ir_worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 

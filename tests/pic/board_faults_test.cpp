@@ -1,13 +1,13 @@
 // Faults of a board and its chip, each with drawn times and values, on a small firmware: a timer turns the
 // left motor and toggles an LED each millisecond, UART2 echoes what AN8 shows.
 
-#include "tests/board_faults.h"
+#include "tests/kit/board_faults.h"
 
 #include "base/archive.h"
 #include "base/random.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

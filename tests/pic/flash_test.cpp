@@ -1,15 +1,15 @@
 // `flash`: another image into the chip of a board that runs. One program blinks an LED each millisecond, the
 // other one each two; both leave a word of RAM alone that the first one has counted in.
 
-#include "tests/board_faults.h"
+#include "tests/kit/board_faults.h"
 
 #include "base/archive.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "emu/image/intel_hex.h"
 #include "emu/pic/pic_node.h"
-#include "tests/node_under_test.h"
-#include "tests/scratch.h"
+#include "tests/kit/node_under_test.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

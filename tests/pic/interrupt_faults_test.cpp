@@ -5,8 +5,8 @@
 #include "base/random.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
-#include "tests/board_faults.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/board_faults.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

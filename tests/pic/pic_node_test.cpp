@@ -3,8 +3,8 @@
 #include "emu/pic/pic_node.h"
 
 #include "base/random.h"
-#include "tests/node_under_test.h"
-#include "tests/scratch.h"
+#include "tests/kit/node_under_test.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -5,8 +5,8 @@
 
 #include "emu/dspic/chip/chip.h"
 #include "emu/pic/board.h"
-#include "tests/node_under_test.h"
-#include "tests/sound_player.h"
+#include "tests/kit/node_under_test.h"
+#include "tests/kit/sound_player.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "emu/pic/board.h"
 #include "emu/pic/pic_node.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 #include "emu/rab_board/rab_node.h"
-#include "tests/board_faults.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/board_faults.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

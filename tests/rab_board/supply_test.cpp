@@ -1,8 +1,8 @@
 // The range-and-bearing board's supply: the robot's battery, the regulator, and the chip's brown-out reset.
 
 #include "emu/rab_board/rab_node.h"
-#include "tests/board_faults.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/board_faults.h"
+#include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // Boards of real runs, executed alone: bit for bit, and with changes drawn at random found at their place.
 
-#include "../scratch.h"
+#include "tests/kit/scratch.h"
 #include "cosim/trace/trace_csv.h"
 
 #include <catch2/catch.hpp>

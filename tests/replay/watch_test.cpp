@@ -1,7 +1,7 @@
 // Registers and variables in a replay's dump: programs with values and delays drawn at random say when what
 // must change, to the cycle.
 
-#include "../scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

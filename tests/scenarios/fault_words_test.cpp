@@ -6,7 +6,7 @@
 #include "scenarios/reader/faults/fault_places.h"
 #include "scenarios/reader/faults/fault_tables.h"
 #include "scenarios/reader/faults/fault_words.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

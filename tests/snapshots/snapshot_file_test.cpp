@@ -7,7 +7,7 @@
 #include "base/sha256.h"
 #include "cosim/resume/sealed_file.h"
 #include "cosim/resume/state_file.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

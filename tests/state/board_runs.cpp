@@ -4,7 +4,7 @@
 #include "emu/dspic/machine/isa.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // The cache's folder: where it is, whom it belongs to, how much it holds.
 
 #include "run/states/boot_cache.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -5,8 +5,8 @@
 #include "cosim/resume/resumed_node.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
-#include "tests/board_faults.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/board_faults.h"
+#include "tests/kit/node_under_test.h"
 #include "tests/state/board_runs.h"
 
 #include <catch2/catch.hpp>

@@ -4,16 +4,15 @@
 
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
-#include "tests/board_faults.h"
-#include "tests/node_under_test.h"
-#include "tests/scratch.h"
+#include "tests/kit/board_faults.h"
+#include "tests/kit/files.h"
+#include "tests/kit/node_under_test.h"
+#include "tests/kit/scratch.h"
 #include "tests/state/board_runs.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::tests;
@@ -90,12 +89,6 @@ Stretch outside_of(RandomStream& random, const Plan& plan, Time from, Time until
 
 Time within(RandomStream& random, Time longest) {
     return 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(longest)));
-}
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
 }
 
 void check(const MakeLogged& make, const Plan& plan, const std::string& name) {

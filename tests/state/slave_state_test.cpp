@@ -4,7 +4,7 @@
 
 #include "emu/pic/pic_node.h"
 #include "tests/i2c/slave_programs.h"
-#include "tests/node_under_test.h"
+#include "tests/kit/node_under_test.h"
 #include "tests/state/board_runs.h"
 
 #include <catch2/catch.hpp>

@@ -4,8 +4,9 @@
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/tam_avr/tam_node.h"
-#include "tests/board_faults.h"
-#include "tests/scratch.h"
+#include "tests/kit/board_faults.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/state/board_runs.h"
 #include "tests/tam_board/rig.h"
 
@@ -14,9 +15,7 @@
 
 #include <array>
 #include <cstdlib>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::tam;
@@ -74,12 +73,6 @@ TamNodeOptions options(const std::string& log = {}) {
     result.network = 2;
     result.log = log;
     return result;
-}
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
 }
 
 image::AvrImage own_image() {
@@ -176,7 +169,7 @@ TEST_CASE("cuts, saved states and going back change nothing") {
         }
         back.settle();
         CHECK(node.finish() == twin.finish());
-        CHECK(text_of(log) == text_of(twin_log));
+        CHECK(tests::text_of(log) == tests::text_of(twin_log));
     }
 }
 

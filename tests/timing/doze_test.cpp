@@ -1,7 +1,7 @@
 // Doze of the 33FJ, timed by programs: docs/timing_rules.md, rules D1 to D6. Timer1 and Timer2 count the
 // peripherals' clock, the program runs on the CPU's.
 
-#include "tests/dspic33_pieces.h"
+#include "tests/kit/dspic33_pieces.h"
 #include "tests/timing/timed_chip.h"
 
 #include "base/archive.h"

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-using puckloop::tests::Result;
+using puckloop::tests::Ran;
 using puckloop::tests::run_puckloop;
 
 namespace {
@@ -51,7 +51,7 @@ TEST_CASE("asm, disasm and asm again give the same program") {
     const Folder folder;
     const std::string source = folder.file("a.s", kSource);
     const std::string first = folder.file("first.hex");
-    const Result assembled = run_puckloop("asm " + source + " -o " + first);
+    const Ran assembled = run_puckloop("asm " + source + " -o " + first);
     CHECK(assembled.output == "");
     CHECK(assembled.status == 0);
     const std::string text = folder.file("b.s");
@@ -66,11 +66,11 @@ TEST_CASE("disasm prints address, words, text and branch targets") {
     const Folder folder;
     const std::string image = folder.file("x.hex");
     run_puckloop("asm " + folder.file("x.s", kSource) + " -o " + image);
-    const Result all = run_puckloop("disasm " + image);
+    const Ran all = run_puckloop("disasm " + image);
     CHECK(all.output.find("goto      L_000100                      ; 000000: 040100 000000") !=
           std::string::npos);
     CHECK(all.output.find("bra       L_000104                      ; 000104: 37ffff") != std::string::npos);
-    const Result part = run_puckloop("disasm " + image + " --start 0x102 --end 102");
+    const Ran part = run_puckloop("disasm " + image + " --start 0x102 --end 102");
     CHECK(part.output.find("#0x1234") == std::string::npos);
     CHECK(part.output.find("; 000102: 801611") != std::string::npos);
     CHECK(part.output.find("000104") == std::string::npos);
@@ -81,12 +81,12 @@ TEST_CASE("disasm prints address, words, text and branch targets") {
 
 TEST_CASE("asm lists and reports") {
     const Folder folder;
-    const Result list = run_puckloop("asm " + folder.file("l.s", "x: call x\nnop\n") + " --format list");
+    const Ran list = run_puckloop("asm " + folder.file("l.s", "x: call x\nnop\n") + " --format list");
     CHECK(list.output == "000000: 020000 000000      1  call x\n000004: 000000             2  nop\n");
-    const Result placed = run_puckloop("asm " + folder.file("o.s", ".org 0x200\nnop\n") + " --format list");
+    const Ran placed = run_puckloop("asm " + folder.file("o.s", ".org 0x200\nnop\n") + " --format list");
     CHECK(placed.output == "000200: 000000             2  nop\n");
     const std::string bad = folder.file("bad.s", "nop\n  mvo w0, w1\n");
-    const Result failed = run_puckloop("asm " + bad);
+    const Ran failed = run_puckloop("asm " + bad);
     CHECK(failed.status == 2);
     CHECK(failed.output == "puckloop: " + bad + ": line 2: unknown instruction \"mvo\" (expected mov?)\n");
 }
@@ -99,7 +99,7 @@ TEST_CASE("Wrong use and bad input give status 2 and one line") {
           "disasm " + damaged, std::string("disasm --words xyz"), std::string("asm"),
           std::string("asm /no/such/file.s"), std::string("asm - --mcu pic16 < /dev/null"),
           std::string("asm - < /dev/null")}) {
-        const Result result = run_puckloop(arguments);
+        const Ran result = run_puckloop(arguments);
         INFO(arguments << ": " << result.output);
         CHECK(result.status == 2);
         CHECK_FALSE(result.output.empty());

@@ -1,7 +1,8 @@
 // `puckloop bench`, `bench bluetooth` and `bench sound` as their users meet them: what can be measured is
 // explained, what is missing is named before any work, results are where they were asked for.
 
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/tools/shell.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <sstream>
 
@@ -23,18 +23,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string text_of(const fs::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 long lines_of(const fs::path& file) {
     const std::string text = text_of(file);
     return std::count(text.begin(), text.end(), '\n');
 }
 
 void check_refused(const std::string& arguments, const std::string& expected) {
-    const Result result = run_puckloop(arguments);
+    const Ran result = run_puckloop(arguments);
     INFO(result.output);
     CHECK(result.status == 2);
     CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
@@ -59,7 +54,7 @@ TEST_CASE("upload: --baud is the port's rate, and a script leaves each row its t
     for (const auto& [option, rate] :
          {std::pair<std::string, speed_t>{"--baud 9600", B9600}, {"--baud 57600", B57600}, {"", B115200}}) {
         INFO(option);
-        const Result nobody = run_puckloop("upload " + image + " " + name + " --wait 0.1 " + option);
+        const Ran nobody = run_puckloop("upload " + image + " " + name + " --wait 0.1 " + option);
         CHECK(nobody.status == 1);
         termios settings{};
         REQUIRE(::tcgetattr(port, &settings) == 0);
@@ -84,7 +79,7 @@ TEST_CASE("upload: --baud is the port's rate, and a script leaves each row its t
 }
 
 TEST_CASE("the help of puckloop bench explains every case on a line of its own") {
-    const Result help = run_puckloop("bench --help");
+    const Ran help = run_puckloop("bench --help");
     REQUIRE(help.status == 0);
     std::smatch list;
     // The list is broken into lines of 100 columns.
@@ -127,14 +122,14 @@ TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetoo
 
 TEST_CASE("exchanges of modules and of boards are tabled, drawn and listed", "[bluetooth]") {
     const fs::path out = scratch_path("bench_bluetooth");
-    const Result drawn = run_puckloop(fmt::format("bench bluetooth --exchanges 300 --out {}", out.string()));
+    const Ran drawn = run_puckloop(fmt::format("bench bluetooth --exchanges 300 --out {}", out.string()));
     INFO(drawn.output);
     REQUIRE(drawn.status == 0);
     CHECK_THAT(drawn.output, Contains("attempts                               300                58\n"));
     CHECK_THAT(drawn.output, Contains("3.7 to 18.6 %\n"));
     CHECK(lines_of(out / "exchanges.csv") == 301);
     CHECK_THAT(text_of(out / "exchanges.svg"), Contains("drawn: 300 attempts"));
-    const Result boards = run_puckloop(fmt::format(
+    const Ran boards = run_puckloop(fmt::format(
         "bench bluetooth --boards --firmware {}/firmware/bluetooth/talk.hex --exchanges 3 --out {}",
         PUCKLOOP_SOURCE, out.string()));
     INFO(boards.output);
@@ -146,7 +141,7 @@ TEST_CASE("exchanges of modules and of boards are tabled, drawn and listed", "[b
 
 TEST_CASE("teams' pause times are tabled, drawn and listed", "[network]") {
     const fs::path out = scratch_path("bench_network");
-    const Result result = run_puckloop(fmt::format(
+    const Ran result = run_puckloop(fmt::format(
         "bench network --robots 2 --robots 3 --runs 1 --duration 12 --forwarder puckloop-forward --out {}",
         out.string()));
     INFO(result.output);
@@ -158,7 +153,7 @@ TEST_CASE("teams' pause times are tabled, drawn and listed", "[network]") {
 
 TEST_CASE("a short walk with ears and radio leaves its table and pictures", "[bluetooth][sound]") {
     const fs::path out = scratch_path("bench_radio");
-    const Result result = run_puckloop(
+    const Ran result = run_puckloop(
         fmt::format("bench sound --experiment radio --radio {}/firmware/ears/ears.hex --walk 8 --out {}",
                     PUCKLOOP_SOURCE, out.string()));
     INFO(result.output);

@@ -9,7 +9,7 @@
 #include "benchmark/wander_scenario.h"
 #include "benchmark/work_profile.h"
 #include "scenarios/reader/read_scenario.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 #include "tests/tools/shell.h"
 
 #include <catch2/catch.hpp>

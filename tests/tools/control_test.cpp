@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "run/control/control_place.h"
 #include "run/control/control_socket.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -8,16 +8,16 @@
 #include <bit>
 #include <string>
 
-using puckloop::tests::Result;
+using puckloop::tests::Ran;
 
 namespace {
 
 /// puckloop frames ARGUMENTS.
-Result frames(const std::string& arguments, const std::string& input = "") {
+Ran frames(const std::string& arguments, const std::string& input = "") {
     return puckloop::tests::run_puckloop("frames " + arguments, input);
 }
 
-void expect(const Result& result, int status, const std::string& output) {
+void expect(const Ran& result, int status, const std::string& output) {
     CHECK(result.output == output);
     CHECK(result.status == status);
 }
@@ -59,7 +59,7 @@ TEST_CASE("frames rab decodes and checks") {
 
 TEST_CASE("frames rab errors prints the classification") {
     // The figures are derived in tests/protocols/rab_errors_test.cpp.
-    const Result result = frames("rab errors --size 16 --payload 1234");
+    const Ran result = frames("rab errors --size 16 --payload 1234");
     CHECK(result.status == 0);
     CHECK(result.output.starts_with("size 16 payload 1234 ones 5 check B: 46 chips\n"));
     for (const char* row : {"one chip inverted       46         6          40       0      0       0\n",
@@ -73,7 +73,7 @@ TEST_CASE("frames rab errors prints the classification") {
 }
 
 TEST_CASE("frames rab refuses what cannot be a frame on one line") {
-    const auto refused = [](const Result& result, const std::string& line) {
+    const auto refused = [](const Ran& result, const std::string& line) {
         expect(result, 2, "puckloop: " + line + "\n");
     };
     refused(frames("rab encode --size 7 --payload 1"),
@@ -130,7 +130,7 @@ TEST_CASE("frames epuck reads a sensor record and refuses what cannot be one") {
                              "0300"
                              "0000C03F"
                              "000020C0";
-    const Result good = frames("epuck decode --json " + front + back);
+    const Ran good = frames("epuck decode --json " + front + back);
     expect(good, 0,
            R"({"record":"sensors","rab_data":4660,"rab_range":10,"rab_bearing":0.25,)"
            R"("proximity":[1,-2,0,0,0,0,0,0],"battery_ok":1,"accelerometer":[1,2,3],"microphones":[4,5,6,7],)"
@@ -146,7 +146,7 @@ TEST_CASE("frames epuck reads a sensor record and refuses what cannot be one") {
 }
 
 TEST_CASE("frames epuck refuses what is no record") {
-    const auto refused = [](const Result& result, const std::string& line) {
+    const auto refused = [](const Ran& result, const std::string& line) {
         expect(result, 2, "puckloop: " + line + "\n");
     };
     const std::string lengths = " (expected 12 bytes (actuators), 72 (sensors) or 4 (configuration))";
@@ -180,7 +180,7 @@ TEST_CASE("frames xbee refuses what is no frame in one line") {
          {"xbee decode 7", "xbee decode ''", "xbee encode 'nonsense'", "xbee encode 'at idd 1'",
           "xbee encode 'at id'", "xbee encode 'at id 100'", "xbee encode 'at command ABC'",
           "xbee encode 'tx to 00000000000000001'", "xbee check --mode 3 7E"}) {
-        const Result result = frames(arguments);
+        const Ran result = frames(arguments);
         CAPTURE(arguments, result.output);
         CHECK(result.status == 2);
         CHECK(result.output.starts_with("puckloop: "));
@@ -189,7 +189,7 @@ TEST_CASE("frames xbee refuses what is no frame in one line") {
 }
 
 TEST_CASE("frames ircom encodes, decodes and checks every word") {
-    const Result sixteen = frames("ircom encode --json 10");
+    const Ran sixteen = frames("ircom encode --json 10");
     CHECK(sixteen.status == 0);
     CHECK_THAT(
         sixteen.output,
@@ -204,7 +204,7 @@ TEST_CASE("frames ircom encodes, decodes and checks every word") {
                 decoded += fmt::format("word {:02X} check {}\n", word,
                                        (4 - std::popcount(static_cast<unsigned>(word)) % 4) % 4);
             }
-            const Result encoded = frames(fmt::format("ircom encode --timing {}", timing), words);
+            const Ran encoded = frames(fmt::format("ircom encode --timing {}", timing), words);
             REQUIRE(encoded.status == 0);
             std::string lines = encoded.output;
             for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; at += 2)
@@ -212,7 +212,7 @@ TEST_CASE("frames ircom encodes, decodes and checks every word") {
             expect(frames("ircom check", lines), 0, checked);
             expect(frames("ircom decode", lines), 0, decoded);
         }
-    const Result bad = frames("ircom decode --json '0 260 520'");
+    const Ran bad = frames("ircom decode --json '0 260 520'");
     CHECK(bad.status == 1);
     CHECK_THAT(bad.output, Catch::Contains(R"("ok":false)") && Catch::Contains(R"("fault":"short")"));
 }
@@ -221,7 +221,7 @@ TEST_CASE("frames ircom refuses what is no word in one line") {
     for (const char* arguments :
          {"ircom encode 100", "ircom encode G", "ircom encode --timing robot 1", "ircom decode ''",
           "ircom decode '0 1 x'", "ircom decode '0 0'", "ircom check '5 nan'", "ircom check '1e300'"}) {
-        const Result result = frames(arguments);
+        const Ran result = frames(arguments);
         CAPTURE(arguments, result.output);
         CHECK(result.status == 2);
         CHECK(result.output.starts_with("puckloop: "));

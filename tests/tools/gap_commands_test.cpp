@@ -2,7 +2,8 @@
 // in a folder is still there afterwards.
 
 #include "base/random.h"
-#include "tests/scratch.h"
+#include "tests/kit/files.h"
+#include "tests/kit/scratch.h"
 #include "tests/tools/shell.h"
 
 #include <fmt/format.h>
@@ -22,11 +23,6 @@ namespace {
 void write(const fs::path& file, const std::string& text) {
     fs::create_directories(file.parent_path());
     std::ofstream(file) << text;
-}
-
-std::string text_of(const fs::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// A folder with a small experiment in "floor": four runs of ground sensors.
@@ -55,7 +51,7 @@ class Desk {
 };
 
 void check_refused(const std::string& arguments, const std::string& word) {
-    const Result result = run_puckloop(arguments);
+    const Ran result = run_puckloop(arguments);
     INFO(arguments << ": " << result.output);
     CHECK(result.status == 2);
     CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
@@ -115,7 +111,7 @@ TEST_CASE("gap record: a change that the kind does not show is warned of") {
 TEST_CASE("gap: -v says each step in the host's log, a bad level is refused") {
     const Desk desk;
     const std::string floor = "gap " + desk.at("floor");
-    const Result result = run_puckloop(floor + " -v");
+    const Ran result = run_puckloop(floor + " -v");
     CHECK(result.status == 0);
     CHECK_THAT(result.output, Contains(" info    [gap ") && Contains("] read " + desk.at("floor")) &&
                                   Contains("] analysed in "));

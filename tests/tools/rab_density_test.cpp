@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "reproductions/density/density.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

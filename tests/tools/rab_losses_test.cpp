@@ -1,7 +1,7 @@
 // Which frames became messages: from register traffic and what was on the air.
 
 #include "base/random.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 #include "traces/rab_losses/results.h"
 
 #include <catch2/catch.hpp>

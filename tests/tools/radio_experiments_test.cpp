@@ -6,7 +6,7 @@
 #include "reproductions/exchange_boards.h"
 
 #include "base/error.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

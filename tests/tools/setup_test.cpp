@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "run/setup.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

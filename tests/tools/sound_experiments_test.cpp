@@ -4,7 +4,7 @@
 #include "reproductions/ellipse.h"
 #include "reproductions/experiments.h"
 
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -4,7 +4,7 @@
 #include "run/factory/node_factory.h"
 #include "run/factory/preflight.h"
 #include "run/setup.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 
 #include "protocols/ip_packet.h"
 #include "reproductions/pause_times.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

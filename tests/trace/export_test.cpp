@@ -1,5 +1,6 @@
 // `puckloop trace export` as a user calls it, and what it makes of bad input.
 
+#include "tests/kit/files.h"
 #include "trace_kit.h"
 
 #include "base/error.h"
@@ -31,13 +32,6 @@ std::vector<TraceRow> some_rows() {
     radio.octets = Octets(std::vector<std::uint8_t>{0x00, 0x7e, 0xff});
     rows.push_back({script.now() + kMillisecond, "r", "m.xbee", "", FaultKind::Flip, radio});
     return rows;
-}
-
-std::string text_of(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "trace_kit.h"
 
-#include "../scratch.h"
+#include "tests/kit/scratch.h"
 #include "cosim/trace/trace_csv.h"
 #include "protocols/uart_sampling.h"
 

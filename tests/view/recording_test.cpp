@@ -1,6 +1,7 @@
 // What a page knows at once of a results folder, what is refused, and what is noted.
 
 #include "base/error.h"
+#include "tests/kit/files.h"
 #include "tests/view/results.h"
 #include "view/events/read_events.h"
 #include "view/recording/recording.h"
@@ -11,7 +12,6 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <random>
 
@@ -30,11 +30,6 @@ std::string refusal(const fs::path& folder) {
         return error.what();
     }
     return "";
-}
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 bool has(const std::string& text, const std::string& part) {

@@ -2,7 +2,7 @@
 
 #include "cosim/trace/trace_row.h"
 #include "physics/render/arena_file.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 // Spoilt at random (seeded): whatever stands in the files, reading ends with an experiment or with one line.
 
 #include "tests/gap/bad_input/made_experiment.h"
+#include "tests/kit/files.h"
 
 #include <catch2/catch.hpp>
 
@@ -14,11 +15,6 @@ constexpr const char* kPieces[] = {
     ",",    ";",    "\n",      "\r\n",    "\"",       "'",      "[",     "]",    "{",    "}",
     "=",    "nan",  "inf",     "-inf",    "1e308",    "-1e308", "1e999", "-0",   "\t",   "#",
     "\xFF", "kind", "[[run]]", "file = ", "\xE2\x82", "0x7f",   "1_0",   "true", ".5.5", "   "};
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// A few cuts, copies, pieces and flipped bytes.
 std::string spoilt(std::string text, RandomStream& random) {
@@ -57,7 +53,7 @@ void spoil_often(const char* file) {
         if (std::string_view(kind) == "timing") made.toml = "";
         const Folder folder(made);
         REQUIRE(refusal(folder.path()) == "");
-        const std::string good = text_of(folder.path() / file);
+        const std::string good = tests::text_of(folder.path() / file);
         for (int round = 0; round < 300; ++round) {
             const std::string bad = spoilt(good, random);
             write_file(folder.path() / file, bad);

@@ -2,12 +2,11 @@
 // parameters' stands in what selects, looks at what is left, or decides.
 
 #include "gap/effects/effect.h"
+#include "tests/kit/files.h"
 
 #include <catch2/catch.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 
@@ -19,11 +18,6 @@ namespace {
 /// Asks which motor driver a robot has, beside wheels and axles of any size: says so in a caution, decides
 /// nothing.
 const std::set<std::string> kApart = {"agenda.cpp"};
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 }  // namespace
 
@@ -37,7 +31,7 @@ TEST_CASE("no effect has a name in selection, diagnosis and decision") {
             if (extension != ".h" && extension != ".cpp") continue;
             if (kApart.contains(entry.path().filename().string())) continue;
             ++files;
-            std::string text = text_of(entry.path());
+            std::string text = puckloop::tests::text_of(entry.path());
             // Comments may give examples.
             for (auto at = text.find("//"); at != std::string::npos; at = text.find("//", at))
                 text.erase(at, text.find('\n', at) - at);

@@ -6,7 +6,7 @@
 #include "gap/reading/read_experiment.h"
 #include "selftest/emulate/record.h"
 #include "tests/gap/simulated.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -9,17 +9,16 @@
 #include "selftest/emulate/secrets.h"
 #include "selftest/emulate/wave_floor.h"
 #include "tests/gap/simulated.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
+#include "tests/kit/shell.h"
 
 #include <catch2/catch.hpp>
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <regex>
 #include <set>
-#include <sys/wait.h>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -190,17 +189,10 @@ TEST_CASE("what cannot be recorded or changed is refused in one line") {
 
 TEST_CASE("the recording program refuses a period that is none, in one line") {
     const std::string period = GENERATE("0", "-1", "nan", "0.1s", "soon");
-    const std::string command =
-        std::string(PUCKLOOP_RECORD) + " --script none --log none --period " + period + " 2>&1";
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    std::array<char, 256> line{};
-    std::string said;
-    while (std::fgets(line.data(), line.size(), pipe) != nullptr)
-        said += line.data();
-    const int status = ::pclose(pipe);
-    CHECK(WEXITSTATUS(status) == 2);
-    CHECK(said == "puckloop-record: --period " + period + ": expected at least 0.01 seconds\n");
+    const tests::Ran ran =
+        tests::run_in_shell(std::string(PUCKLOOP_RECORD) + " --script none --log none --period " + period);
+    CHECK(ran.status == 2);
+    CHECK(ran.output == "puckloop-record: --period " + period + ": expected at least 0.01 seconds\n");
 }
 
 TEST_CASE("every secret can be set, and at least twelve hide something") {

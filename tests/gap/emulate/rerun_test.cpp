@@ -7,7 +7,7 @@
 #include "selftest/emulate/record.h"
 #include "selftest/emulate/rerun.h"
 #include "selftest/emulate/surroundings.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

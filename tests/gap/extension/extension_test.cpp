@@ -6,7 +6,7 @@
 #include "gap/pipeline/analyse.h"
 #include "physics/description/plan.h"
 #include "scenarios/reader/read_scenario.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -5,7 +5,7 @@
 #include "gap/data/experiment.h"
 #include "gap/importers/importers.h"
 #include "gap/reading/read_experiment.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

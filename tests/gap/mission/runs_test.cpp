@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "gap/mission/mission.h"
 #include "gap/mission/track.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

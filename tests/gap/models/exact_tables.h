@@ -6,7 +6,7 @@
 #include "gap/models/model.h"
 #include "gap/reading/read_experiment.h"
 #include "selftest/benches.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <cmath>
 #include <map>

@@ -5,8 +5,8 @@
 #include "gap/pipeline/analyse.h"
 #include "protocols/rab_reading.h"
 #include "scenarios/reader/read_scenario.h"
+#include "tests/kit/scratch.h"
 #include "tests/physics/ir_worlds.h"
-#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -9,7 +9,7 @@
 #include "selftest/grammar/laboratory.h"
 #include "selftest/grammar/near_misses.h"
 #include "selftest/rig.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,7 +3,7 @@
 #include "gap/data/experiment.h"
 #include "gap/reading/read_experiment.h"
 #include "selftest/case_list.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // hidden.
 
 #include "selftest/run_cases.h"
-#include "tests/scratch.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 
