@@ -87,6 +87,7 @@ TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[n
     REQUIRE(log.find(common) != std::string::npos);
     CHECK(log.substr(log.find(common)) == real.out.substr(real.out.find(common)));
     for (const char* line : {"host alpha 10.0.0.254\n", "unknown gaierror -2\n", "wlan0 10.0.0.254\n",
+                             "devices ['lo', 'wlan0']\n", "ways [['wlan0', '0000000A', '00000000']]\n",
                              "raw EPERM\n", "packet EPERM\n", "six EAFNOSUPPORT\n", "outside ENETUNREACH\n"})
         CHECK(log.find(line) != std::string::npos);
     const auto warnings = bench.report("o")["nodes"]["alpha.linux"]["warnings"];

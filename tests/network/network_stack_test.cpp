@@ -13,6 +13,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <sstream>
+#include <string>
+#include <vector>
 
 using namespace puckloop;
 using namespace puckloop::linuxboard;
@@ -391,6 +394,41 @@ TEST_CASE("keep-alive finds out that the other board restarted", "[network]") {
     NetworkStack::Received one;
     CHECK(boards.a.receive(client, 1, false, one, boards.now) == ECONNRESET);
     CHECK(boards.b.counts().no_port == 1);
+}
+
+TEST_CASE("the board's /proc/net has its interfaces, ways and sockets", "[network]") {
+    Boards boards;
+    const auto [client, server] = boards.connected();
+    const auto rows = [&](NetworkTable which) {
+        std::vector<std::string> lines;
+        std::istringstream text(boards.b.table(which));
+        for (std::string line; std::getline(text, line);)
+            lines.push_back(line.substr(0, line.find_last_not_of(' ') + 1));
+        return lines;
+    };
+    const std::string rest =
+        " 00000000:00000000 00:00000000 00000000     0        0 0 1 0000000000000000 100 0 0 10 0";
+    const auto streams = rows(NetworkTable::Streams);
+    REQUIRE(streams.size() == 3);
+    CHECK(streams[1] == "   0: 00000000:1B58 00000000:0000 0A" + rest);
+    CHECK(streams[2].starts_with("   1: 0200000A:1B58 0100000A:"));
+    CHECK(streams[2].ends_with(" 01" + rest));
+    std::size_t taken = 0;
+    CHECK(boards.a.send(client, std::nullopt, "unread", taken, boards.now) == 0);
+    boards.pass(kMillisecond);
+    CHECK(rows(NetworkTable::Streams)[2].find(" 01 00000000:00000006 ") != std::string::npos);
+    const int datagrams = boards.b.open(false);
+    REQUIRE(boards.b.bind(datagrams, {0, 5000}) == 0);
+    REQUIRE(rows(NetworkTable::Datagrams).size() == 2);
+    CHECK(rows(NetworkTable::Datagrams)[1].starts_with("    0: 00000000:1388 00000000:0000 07 "));
+    // SYN and acknowledgement, 40 octets and 4 of an option; its answer; six octets of data; their
+    // acknowledgement.
+    const auto devices = rows(NetworkTable::Interfaces);
+    REQUIRE(devices.size() == 4);
+    CHECK(devices[2].starts_with("    lo:       0       0 "));
+    CHECK(devices[3].starts_with(" wlan0:     130       3 "));
+    CHECK(rows(NetworkTable::Routes)[1] == "wlan0\t0000000A\t00000000\t0001\t0\t0\t0\t00FFFFFF\t0\t0\t0");
+    CHECK(rows(NetworkTable::Neighbours).size() == 1);
 }
 
 TEST_CASE("a socket option that is not known is refused", "[network]") {

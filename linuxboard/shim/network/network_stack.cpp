@@ -85,6 +85,8 @@ void NetworkStack::emit(IpPacket packet, Time now, bool loop) {
         packet.payload.assign(first, first + static_cast<std::ptrdiff_t>(size));
         out_.push_back({now, cosim::Octets(protocols::encode(packet))});
         ++counts_.packets_sent;
+        ++wireless_.packets_sent;
+        wireless_.octets_sent += protocols::kIpHeader + size;
         begin += std::max<std::size_t>(size, 1);
     }
 }
@@ -97,6 +99,8 @@ void NetworkStack::receive_packet(std::span<const std::uint8_t> octets, Time now
     }
     if (packet->to != place_.address && !is_for_many(packet->to)) return;
     ++counts_.packets_received;
+    ++wireless_.packets_received;
+    wireless_.octets_received += octets.size();
     if (packet->whole()) return take_in(*packet, now);
     if (const auto complete = reassemble(*packet, now)) take_in(*complete, now);
 }
@@ -144,6 +148,11 @@ void NetworkStack::advance(Time now) {
     while (!looped_.empty() && looped_.front().time <= now) {
         const Looped one = std::move(looped_.front());
         looped_.pop_front();
+        for (auto [packets, octets] : {std::pair{&loopback_.packets_sent, &loopback_.octets_sent},
+                                       std::pair{&loopback_.packets_received, &loopback_.octets_received}}) {
+            ++*packets;
+            *octets += protocols::kIpHeader + one.packet.payload.size();
+        }
         take_in(one.packet, now);
     }
     std::vector<int> due;

@@ -12,6 +12,7 @@
 #include "linuxboard/shim/network/name_server.h"
 #include "linuxboard/shim/network/network_spec.h"
 #include "linuxboard/shim/network/socket.h"
+#include "linuxboard/shim/wire/wire.h"
 
 #include <cerrno>
 #include <cstdint>
@@ -38,6 +39,13 @@ struct NetworkCounts {
     std::uint64_t damaged = 0;            ///< with a wrong checksum
     std::uint64_t connections = 0;        ///< opened, by either side
 };
+
+/// Of lo and of wlan0.
+struct InterfaceCounts {
+    std::uint64_t packets_sent = 0, packets_received = 0, octets_sent = 0, octets_received = 0;
+};
+
+using wire::NetworkTable;
 
 /// A packet for the network, handed over at `time`.
 struct PacketOut {
@@ -85,6 +93,8 @@ class NetworkStack {
     int name_of(int id, bool peer, Endpoint& name) const;
     int set_option(int id, int level, int name, std::string_view value, cosim::Time now);
     int get_option(int id, int level, int name, std::string& value);
+    /// As the board's /proc/net has it.
+    std::string table(NetworkTable which) const;
     /// As poll() has them.
     int events(int id) const;
     std::uint32_t activity(int id) const;
@@ -188,6 +198,7 @@ class NetworkStack {
     std::vector<PacketOut> out_;
     bool used_ = false;
     NetworkCounts counts_;
+    InterfaceCounts loopback_, wireless_;
     TcpCounts ended_;  ///< of connections that are no more
 };
 

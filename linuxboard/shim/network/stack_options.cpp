@@ -1,6 +1,7 @@
 // setsockopt() and getsockopt().
 
 #include "linuxboard/shim/network/network_stack.h"
+#include "linuxboard/shim/network/tcp_states.h"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -144,21 +145,13 @@ int set_timeout(Time& timeout, std::string_view value) {
 
 /// As far as there is something to say; states as the kernel numbers them.
 tcp_info info_of(const TcpConnection& tcp) {
-    using State = TcpConnection::State;
-    constexpr std::pair<State, int> kStates[] = {
-        {State::Closed, TCP_CLOSE},         {State::SynSent, TCP_SYN_SENT},
-        {State::SynReceived, TCP_SYN_RECV}, {State::Established, TCP_ESTABLISHED},
-        {State::FinWait1, TCP_FIN_WAIT1},   {State::FinWait2, TCP_FIN_WAIT2},
-        {State::CloseWait, TCP_CLOSE_WAIT}, {State::Closing, TCP_CLOSING},
-        {State::LastAck, TCP_LAST_ACK},     {State::TimeWait, TCP_TIME_WAIT}};
     const auto microseconds = [](Time time) {
         return static_cast<std::uint32_t>(time / cosim::kMicrosecond);
     };
     const TcpConnection::Figures figures = tcp.figures();
     const std::uint32_t segment = std::max(figures.segment, 1u);
     tcp_info info{};
-    for (const auto& [state, number] : kStates)
-        if (tcp.state() == state) info.tcpi_state = static_cast<std::uint8_t>(number);
+    info.tcpi_state = static_cast<std::uint8_t>(number_of(tcp.state()));
     info.tcpi_rto = microseconds(figures.timeout);
     info.tcpi_rtt = microseconds(figures.round_trip);
     info.tcpi_rttvar = microseconds(figures.variation);
@@ -284,6 +277,10 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
         value = bytes_as(what);
         return 0;
     };
+    if (static_cast<std::uint32_t>(level) == wire::kNetworkTables) {
+        value = table(static_cast<NetworkTable>(name)).substr(0, wire::kMaximumData);
+        return 0;
+    }
     if (level == IPPROTO_TCP && !socket.stream) return ENOPROTOOPT;
     if (const bool* flag = flag_of(options, level, name)) return give(int{*flag ? 1 : 0});
     if (const Number stored = number_of(options, level, name); stored.value != nullptr)

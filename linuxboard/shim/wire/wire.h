@@ -119,6 +119,10 @@ struct PollEntry {
 };
 inline constexpr std::uint32_t kNeverSeen = 0xffffffff;
 
+/// In place of a level and an option: what /proc/net has.
+inline constexpr std::uint32_t kNetworkTables = 0x70757070;
+enum class NetworkTable : std::uint32_t { Interfaces, Routes, Neighbours, Streams, Datagrams };
+
 /// A socket on its way between processes: found by the host's descriptor that goes with it.
 struct PassedFile {
     std::uint64_t inode = 0;

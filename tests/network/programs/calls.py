@@ -29,6 +29,9 @@ try:
 except OSError as error:
     print("wlan0", name_of(error))
 
+print("devices", [line.split(":")[0].strip() for line in open("/proc/net/dev").readlines()[2:]])
+print("ways", [line.split()[:3] for line in open("/proc/net/route").readlines()[1:]])
+
 # Refusals
 attempt("raw", lambda: socket.socket(socket.AF_INET, socket.SOCK_RAW, socket.IPPROTO_ICMP))
 attempt("packet", lambda: socket.socket(socket.AF_PACKET, socket.SOCK_RAW))

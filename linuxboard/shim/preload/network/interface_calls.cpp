@@ -34,6 +34,8 @@ constexpr Interface kInterfaces[] = {
     {kWirelessIndex, "wlan0", IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST, 1500},
 };
 
+constexpr int kQueueLength = 1000;  // DEFAULT_TX_QUEUE_LEN
+
 bool is_loopback(const Interface& one) {
     return one.index == kLoopbackIndex;
 }
@@ -116,6 +118,15 @@ int ask_interface(unsigned long request, void* argument) {
     case SIOCGIFMTU:
         wish.ifr_mtu = found->mtu;
         break;
+    case SIOCGIFMETRIC:
+        wish.ifr_metric = 0;
+        break;
+    case SIOCGIFTXQLEN:
+        wish.ifr_qlen = kQueueLength;
+        break;
+    case SIOCGIFMAP:
+        wish.ifr_map = {};
+        break;
     case SIOCGIFHWADDR: {
         wish.ifr_hwaddr = {};
         wish.ifr_hwaddr.sa_family = is_loopback(*found) ? ARPHRD_LOOPBACK : ARPHRD_ETHER;
@@ -163,6 +174,9 @@ int socket_ioctl(OpenFile& file, unsigned long request, void* argument) {
     case SIOCGIFFLAGS:
     case SIOCGIFINDEX:
     case SIOCGIFMTU:
+    case SIOCGIFMETRIC:
+    case SIOCGIFTXQLEN:
+    case SIOCGIFMAP:
     case SIOCGIFHWADDR:
         return ask_interface(request, argument);
     case SIOCSIFADDR:

@@ -1,6 +1,6 @@
 // Names of computers: getaddrinfo() and its older kin know the computers of the run's network and no others;
-// no name server is asked. Where a fault is about names, those of other computers are as if one were:
-// /etc/hosts does not have them, and the node decides whether an answer comes.
+// no name server is asked. Where a fault is about names, those of other computers are as if one were: the
+// node decides whether an answer comes.
 
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -10,7 +10,6 @@
 #include <arpa/inet.h>
 #include <netdb.h>
 #include <strings.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -53,30 +52,6 @@ const char* name_of_address(std::uint32_t address) {
     for (std::uint32_t i = 0; i < page().host_count; ++i)
         if (page().hosts[i].address == address) return page().hosts[i].name;
     return nullptr;
-}
-
-int open_network_file(const char* path) {
-    if (!is_linked() || page().networked == 0 || !is_text(path)) return -1;
-    const bool hosts = std::strcmp(path, "/etc/hosts") == 0;
-    if (!hosts && std::strcmp(path, "/etc/resolv.conf") != 0) return -1;
-    std::string text = "nameserver 127.0.0.53\n";
-    if (hosts) {
-        text = "127.0.0.1\tlocalhost\n";
-        for (std::uint32_t i = 0; i < page().host_count; ++i) {
-            if (page().asks_for_names != 0 && page().hosts[i].address != page().network_address) continue;
-            char number[INET_ADDRSTRLEN];
-            const in_addr address{htonl(page().hosts[i].address)};
-            inet_ntop(AF_INET, &address, number, sizeof number);
-            text += std::string(number) + "\t" + page().hosts[i].name + "\n";
-        }
-    }
-    const int fd = memfd_create(hosts ? "hosts" : "resolv.conf", MFD_CLOEXEC);
-    if (fd < 0) return -1;
-    const bool written = REAL(write)(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    lseek(fd, 0, SEEK_SET);
-    if (written) return fd;
-    REAL(close)(fd);
-    return -1;
 }
 
 }  // namespace puckloop::shim

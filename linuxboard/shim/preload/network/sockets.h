@@ -42,7 +42,7 @@ const char* name_of_address(std::uint32_t address);
 /// "10.0.0.1" and what else inet_aton() takes.
 bool is_numeric(const char* text, std::uint32_t& address);
 
-/// A descriptor of "/etc/hosts" and "/etc/resolv.conf" as they are on the network, -1 for another path.
+/// A descriptor of a file that is of the network (network_files.cpp), -1 for another path.
 int open_network_file(const char* path);
 
 // interface_calls.cpp
