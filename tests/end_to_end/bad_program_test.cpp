@@ -220,3 +220,12 @@ program = ["./waits.sh"]
     REQUIRE(bench.run("o", {scenario, "--in-process", "--duration", "2"}).status == good.status);
     CHECK(bench.report("o")["warnings"].empty());
 }
+
+TEST_CASE("a port that is not set to the rate of the line is named as that") {
+    const Workbench bench;
+    const std::string speaks = bench.file(
+        "speaks.sh", "#!/bin/sh\nexec 3<>/dev/ttyS0\nprintf '\\001\\002\\003\\004\\005' >&3\nread x <&3\n");
+    chmod(speaks.c_str(), 0755);
+    const Ended ended = with_program(bench, {"--duration", "4"}, {speaks});
+    check_one_line(ended, 1, {"robot0.linux", "sent 5 bytes", "not set to the rate of the line", "115200"});
+}

@@ -14,8 +14,8 @@ TestSuite suite() {
             .scenario = "hello.toml",
             .out = "out/hello",
             .wall_s = 1.5,
-            .results = {{"a <b> & \"c\"", "line 3", "robot0", true, "seen", 1.0},
-                        {"no. #2\x01", "line 9", "robot0.uart", false, "not seen", {}}}};
+            .results = {{"a <b> & \"c\"", "", "line 3", "robot0", true, "seen", 1.0},
+                        {"no. #2\x01", "", "line 9", "robot0.uart", false, "not seen", {}}}};
 }
 }  // namespace
 

@@ -53,7 +53,7 @@ void spoil_often(const char* file) {
         if (std::string_view(kind) == "timing") made.toml = "";
         const Folder folder(made);
         REQUIRE(refusal(folder.path()) == "");
-        const std::string good = tests::text_of(folder.path() / file);
+        const std::string good = puckloop::tests::text_of(folder.path() / file);
         for (int round = 0; round < 300; ++round) {
             const std::string bad = spoilt(good, random);
             write_file(folder.path() / file, bad);
