@@ -93,7 +93,8 @@ void let_client_drive(RunSetup& setup, const RunRequest& request) {
     for (const auto& [option, given] :
          {std::pair{"--realtime", request.realtime}, std::pair{"--paced", request.paced},
           std::pair{"--gdb", !request.gdb.empty()}, std::pair{"--save-state", !request.save_state.empty()},
-          std::pair{"--from-state", !request.from_state.empty()}})
+          std::pair{"--from-state", !request.from_state.empty()},
+          std::pair{"--stats", !request.stats.empty()}})
         if (given)
             throw InputError("", option,
                              "does not go with --control, whose client decides when the run goes on",

@@ -55,6 +55,10 @@ class Client(InFolder):
             step = run.step(for_="20 ms", until={"frame": {"link": "robot0.uart", "value": "zz"}})
             self.assertFalse(step.met)
 
+    def test_a_board_that_is_profiled_is_not_driven(self):
+        with self.assertRaisesRegex(puckloop.StartError, "--stats: does not go with --control"):
+            self.begun(options=["--stats", "all"])
+
     def test_frames_so_far_are_decoded(self):
         with self.begun() as run:
             run.step(to="1 s")
