@@ -20,7 +20,9 @@ const std::vector<std::string> kTops = {
     "run",  "selftest", "tests",      "tools",     "traces",  "scenarios", "firmware"};
 
 /// Named as examples of what a user writes, or made by the build.
-const std::set<std::string> kExamples = {"docs/gap_predictive/NAME.svg", "firmware/tam/tam.elf"};
+const std::set<std::string> kExamples = {"docs/gap_predictive/NAME.svg", "docs/schema/NAME.json",
+                                         "emu/dspic/peripherals/NAME.h", "firmware/tam/tam.elf",
+                                         "tests/dspic/NAME_test.cpp",    "tests/NAME_board"};
 
 struct Names {
     std::set<std::string> paths;                           ///< files with and without ending, and folders
@@ -130,7 +132,7 @@ TEST_CASE("files that comments name are there") {
 
 TEST_CASE("files that documents name are there") {
     const Names all = names();
-    std::vector<std::string> pages{"README.md"};
+    std::vector<std::string> pages{"README.md", "CONTRIBUTING.md"};
     for (const std::string& top : kTops)
         for (const std::string& file : layers::files_below(top))
             if (file.ends_with(".md")) pages.push_back(file);
