@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import unittest
 
-from kit import PROGRAM, SOURCE, InFolder
+from kit import PROGRAM, SOURCE, InFolder, typed_in
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 IMAGES = pathlib.Path(os.environ.get("PUCKLOOP_IMAGES", "/nowhere"))
@@ -30,12 +30,7 @@ REASONS = [
 
 
 def commands_of(page):
-    """Indented lines that are commands, joined where a backslash ends them, without their remarks."""
-    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL).replace("\\\n", " ")
-    for line in text.splitlines():
-        found = re.match(r"    (?:\./)?((?:puckloop .*|printf .* >.*))$", line)
-        if found:
-            yield re.sub(r"\s+", " ", re.sub(r"\s{2,}(#|\().*$", "", found[1])).strip()
+    return (re.sub(r"\s+", " ", command) for command in typed_in(page, "puckloop .*|printf .* >.*"))
 
 
 def reason_of(command):

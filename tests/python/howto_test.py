@@ -7,19 +7,15 @@ import shutil
 import subprocess
 import unittest
 
-from kit import PROGRAM, SOURCE, InFolder
+from kit import PROGRAM, SOURCE, InFolder, typed_in
 
 HOWTO = SOURCE / "docs" / "howto"
 MINUTES = 5  # of wall time, for one command
 
 
-def commands_of(text):
-    """Indented lines that are commands, without their remarks."""
-    found = []
-    for line in re.sub(r"```.*?```", "", text, flags=re.DOTALL).splitlines():
-        if re.match(r"    (puckloop|cd|python3|tail|sed) ", line):
-            found.append(re.sub(r"\s{2,}# .*$", "", line[4:]) if "Ctrl-C" not in line else "")
-    return [line for line in found if line]
+def commands_of(page):
+    """But for those that go on until somebody ends them."""
+    return list(typed_in(page, r"(?:puckloop|cd|python3|tail|sed) (?:(?!Ctrl-C).)*"))
 
 
 def bytes_of(image):
@@ -49,9 +45,8 @@ class Pages(InFolder):
         os.symlink(PROGRAM, self.folder / "bin" / "puckloop")
 
     def check_page(self, name, least):
-        text = (HOWTO / name).read_text()
-        self.prepare(text)
-        commands = commands_of(text)
+        self.prepare((HOWTO / name).read_text())
+        commands = commands_of(HOWTO / name)
         self.assertGreaterEqual(len(commands), least)
         for command in commands:
             if "pytest" in command:

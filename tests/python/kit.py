@@ -20,6 +20,15 @@ def puckloop(*words, folder=None, env=None, timeout=300):
         env={**os.environ, **(env or {})}, stdin=subprocess.DEVNULL, check=False)
 
 
+def typed_in(page, commands):
+    """Indented lines of a page that are one of the commands (a pattern), whole where backslashes divide them, without
+    remarks."""
+    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL).replace("\\\n", " ")
+    for line in text.splitlines():
+        if found := re.match(rf"    (?:\./)?({commands})$", line):
+            yield re.sub(r"\s{2,}(#|\().*$", "", found[1]).strip()
+
+
 class InFolder(unittest.TestCase):
     """A test with a folder of its own."""
 

@@ -10,6 +10,11 @@ from kit import PROGRAM, SOURCE, InFolder, puckloop
 
 
 class New(InFolder):
+    def its_tests(self, project):
+        """The ended process of the project's own tests."""
+        return subprocess.run([sys.executable, "-B", "-m", "unittest"], cwd=project, capture_output=True, text=True,
+                              env={**os.environ, "PUCKLOOP": PROGRAM}, check=False)
+
     def test_a_project_that_works(self):
         made = puckloop("new", "my_robot", folder=self.folder)
         self.assertEqual(made.returncode, 0, made.stderr)
@@ -22,8 +27,7 @@ class New(InFolder):
         self.assertEqual((launch["type"], launch["request"], launch["board"]), ("puckloop", "launch", "pic"))
         checked = puckloop("check", scenario)
         self.assertEqual(checked.returncode, 0, checked.stderr)
-        own = subprocess.run([sys.executable, "-B", "-m", "unittest"], cwd=project, capture_output=True, text=True,
-                             env={**os.environ, "PUCKLOOP": PROGRAM}, check=False)
+        own = self.its_tests(project)
         self.assertEqual(own.returncode, 0, own.stderr)
         self.refused(puckloop("new", "my_robot", folder=self.folder), "my_robot", "is there already")
 
@@ -69,9 +73,7 @@ class New(InFolder):
         report = json.loads((self.folder / "out/report.json").read_text())
         self.assertTrue(all(one["met"] for one in report["expectations"]))
         self.assertEqual(report["warnings"], [])
-        tested = [sys.executable, "-B", "-m", "unittest"]
-        own = subprocess.run(tested, cwd=project, capture_output=True, text=True, env={**os.environ, "PUCKLOOP": PROGRAM},
-                             check=False)
+        own = self.its_tests(project)
         self.assertEqual(own.returncode, 0, own.stderr)
         # A HEX has no variables: that is said, in the place that asks for one.
         scenario = project / "blinker.toml"
@@ -83,8 +85,7 @@ class New(InFolder):
         (project / "firmware/firmware.elf").write_bytes((SOURCE / "firmware/epuck/epuck.elf").read_bytes())
         failed = puckloop("run", scenario, "--in-process", "--out", self.folder / "out")
         self.assertEqual((failed.returncode, failed.stderr.count("\n")), (1, 1), failed.stderr)
-        own = subprocess.run(tested, cwd=project, capture_output=True, text=True, env={**os.environ, "PUCKLOOP": PROGRAM},
-                             check=False)
+        own = self.its_tests(project)
         self.assertEqual(own.returncode, 1, own.stderr)
 
     def test_names_that_cannot_be(self):
