@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "debug/core_register.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,29 +28,15 @@ std::optional<std::uint64_t> any_number(std::string_view text) {
     return value;
 }
 
-std::string upper(std::string_view text) {
-    std::string made(text);
-    for (char& c : made)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 0x20);
-    return made;
-}
-
-std::optional<std::size_t> core_register(std::string_view name, const debug::DebugChip& chip) {
-    const std::string wanted = upper(name);
-    const auto registers = chip.registers();
-    for (std::size_t i = 0; i < registers.size(); ++i)
-        if (upper(registers[i].name) == wanted) return i;
-    return std::nullopt;
-}
-
 /// Lowest bit and mask of a field or bit of a register.
 std::optional<std::pair<int, std::uint64_t>> field_bits(const debug::DebugChip::Special& special,
                                                         std::string_view name) {
-    const std::string wanted = upper(name);
+    const std::string wanted = debug::upper_case(name);
     if (const auto bit = any_number(name); bit && *bit < static_cast<std::uint64_t>(special.bits))
         return std::pair{static_cast<int>(*bit), std::uint64_t{1}};
     for (const debug::DebugChip::Field& field : special.fields)
-        if (upper(field.name) == wanted) return std::pair{field.low, (std::uint64_t{1} << field.bits) - 1};
+        if (debug::upper_case(field.name) == wanted)
+            return std::pair{field.low, (std::uint64_t{1} << field.bits) - 1};
     return std::nullopt;
 }
 
@@ -103,12 +90,12 @@ Place place_of(std::string_view text, const debug::DebugChip& chip, const Progra
         const std::string_view reg = name.substr(0, dot);
         place.integer = true;
         if (dot == std::string_view::npos)
-            if (const auto core = core_register(name, chip); core && !index && !bytes) {
+            if (const auto core = debug::core_register(name, chip); core && !index && !bytes) {
                 place.core = core;
                 place.bytes = static_cast<std::uint32_t>(chip.registers()[*core].bits / 8);
                 return place;
             }
-        const auto special = chip.special(upper(reg));
+        const auto special = chip.special(debug::upper_case(reg));
         if (!special || index || bytes) unknown(text, reg, chip, program);
         place.address = static_cast<std::uint16_t>(special->address);
         place.bytes = static_cast<std::uint32_t>(special->bits / 8);
@@ -121,7 +108,7 @@ Place place_of(std::string_view text, const debug::DebugChip& chip, const Progra
             for (const debug::DebugChip::Field& one : special->fields)
                 fields.push_back(one.name);
             throw InputError(
-                "", "", fmt::format("{} has no field '{}'", upper(reg), field),
+                "", "", fmt::format("{} has no field '{}'", debug::upper_case(reg), field),
                 fmt::format("a bit number below {}", special->bits) +
                     (fields.empty() ? "" : fmt::format(" or one of {}", fmt::join(fields, ", "))) +
                     did_you_mean(field, fields));
@@ -207,7 +194,8 @@ std::string shown(const Place& place, const debug::DebugChip& chip, char format)
     if (place.core) return fmt::format("{} ({})", value, hex);
     std::string text = place.special ? hex : fmt::format("{} ({})", value, hex);
     if (place.special)
-        if (const auto special = chip.special(upper(place.name.substr(place.name.starts_with("$") ? 1 : 0))))
+        if (const auto special =
+                chip.special(debug::upper_case(place.name.substr(place.name.starts_with("$") ? 1 : 0))))
             text += grouped(*special);
     return text;
 }

@@ -5,6 +5,7 @@
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
 #include "emu/tam_avr/tam_node.h"
+#include "run/chips/board_around.h"
 
 namespace puckloop::tools {
 

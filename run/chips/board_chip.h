@@ -2,7 +2,7 @@
 // The chip in a board of a run, as debuggers and profiles see it.
 
 #include "cosim/core/clock.h"
-#include "cosim/core/stateful_node.h"
+#include "cosim/core/node.h"
 #include "debug/debug_chip.h"
 
 #include <functional>
@@ -20,14 +20,7 @@ struct BoardChip {
     std::function<void(std::vector<cosim::Message>&)> press_reset;
 };
 
-/// A node around a board that does not hide it.
-class BoardAround {
-  public:
-    virtual ~BoardAround() = default;
-    virtual cosim::StatefulNode& board() = 0;
-};
-
-/// `board` must outlive it.
+/// Through what is around it (BoardAround). `board` must outlive it.
 BoardChip chip_of(cosim::Node& board);
 
 }  // namespace puckloop::tools

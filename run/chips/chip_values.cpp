@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "debug/core_register.h"
 #include "emu/image/symbol_sizes.h"
 #include "run/chips/image_names.h"
 
@@ -27,12 +28,6 @@ std::string hex_of(const std::vector<std::uint8_t>& bytes) {
 }
 
 }  // namespace
-
-std::string upper_case(std::string text) {
-    for (char& c : text)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return text;
-}
 
 ChipValues::ChipValues(const debug::DebugChip& chip, std::string node, const std::string& firmware)
     : chip_(chip), node_(std::move(node)), places_({}, {}) {
@@ -73,13 +68,11 @@ ChipValues::Place ChipValues::place_of(const json& request) const {
 }
 
 ordered_json ChipValues::read_register(std::string name) const {
-    name = upper_case(name);
-    const auto registers = chip_.registers();
-    for (std::size_t i = 0; i < registers.size(); ++i)
-        if (upper_case(registers[i].name) == name)
-            return {{"value", chip_.read_register(i)},
-                    {"bits", registers[i].bits},
-                    {"fields", ordered_json::object()}};
+    if (const auto core = debug::core_register(name, chip_))
+        return {{"value", chip_.read_register(*core)},
+                {"bits", chip_.registers()[*core].bits},
+                {"fields", ordered_json::object()}};
+    name = debug::upper_case(name);
     const auto special = chip_.special(name);
     if (!special) {
         const std::vector<std::string> names = chip_.special_names();

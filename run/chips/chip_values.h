@@ -52,7 +52,4 @@ class ChipValues {
     debug::Places places_;
 };
 
-/// Of letters A to Z, as data sheets write names.
-std::string upper_case(std::string text);
-
 }  // namespace puckloop::tools

@@ -2,6 +2,7 @@
 
 #include "debug/profile.h"
 #include "emu/image/symbol_sizes.h"
+#include "run/chips/board_around.h"
 #include "run/chips/board_chip.h"
 #include "run/chips/image_names.h"
 
@@ -28,39 +29,22 @@ Names names_of(const std::string& firmware, const debug::DebugChip& chip) {
                              !chip.stack_grows_up())};
 }
 
-class ProfiledNode final : public cosim::StatefulNode {
+class ProfiledNode final : public BoardAround {
   public:
     ProfiledNode(std::unique_ptr<cosim::StatefulNode> board, const std::string& firmware)
-        : board_(std::move(board)),
-          chip_(chip_of(*board_).chip),
+        : BoardAround(std::move(board)),
+          chip_(chip_of(this->board()).chip),
           names_(names_of(firmware, *chip_)),
           profile_(*chip_) {
         chip_->set_instrument(&profile_, true);
     }
 
-    std::string_view name() const override { return board_->name(); }
-    std::span<const cosim::Port> ports() const override { return board_->ports(); }
-    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
-                 std::vector<cosim::Message>& outbox) override {
-        board_->advance(until, inbox, outbox);
-    }
-    cosim::Time earliest_output(cosim::PortIndex port) const override {
-        return board_->earliest_output(port);
-    }
-    cosim::Time lookahead(cosim::PortIndex port) const override { return board_->lookahead(port); }
-    std::optional<cosim::Time> begun(cosim::PortIndex port) const override { return board_->begun(port); }
-    void state(StateWriter& archive) const override {
-        const cosim::StatefulNode& board = *board_;
-        board.state(archive);
-    }
-    void state(StateReader& archive) override { board_->state(archive); }
-    void renew_random_streams() override { board_->renew_random_streams(); }
     // It does not go back (rewindable()): what is executed counts once.
 
     std::string finish() override {
         chip_->set_instrument(nullptr, false);
         profile_.finish(chip_->cycle());
-        ordered_json report = ordered_json::parse(board_->finish());
+        ordered_json report = ordered_json::parse(BoardAround::finish());
         report["stats"] =
             ordered_json::parse(profile_json(profile_, names_.places, names_.variables, *chip_));
         const std::string warning = stack_warning(profile_, names_.variables, *chip_);
@@ -69,7 +53,6 @@ class ProfiledNode final : public cosim::StatefulNode {
     }
 
   private:
-    std::unique_ptr<cosim::StatefulNode> board_;
     std::unique_ptr<debug::DebugChip> chip_;
     Names names_;
     debug::Profile profile_;

@@ -1,6 +1,7 @@
 #include "run/chips/watched_node.h"
 
 #include "base/error.h"
+#include "run/chips/board_around.h"
 #include "run/chips/board_chip.h"
 #include "run/chips/chip_values.h"
 #include "run/chips/value_words.h"
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -31,28 +31,20 @@ struct Look {
     Time due() const { return seen || next > by ? cosim::kNever : next; }
 };
 
-class WatchedNode final : public cosim::StatefulNode, public BoardAround, private cosim::Rewindable {
+class WatchedNode final : public BoardAround, private cosim::Rewindable {
   public:
     WatchedNode(std::unique_ptr<cosim::StatefulNode> board, const std::string& firmware,
                 const std::vector<ChipWatch>& watches)
-        : board_(std::move(board)),
-          chip_(chip_of(*board_).chip),
-          values_(*chip_, std::string(board_->name()), firmware) {
+        : BoardAround(std::move(board)),
+          chip_(chip_of(this->board()).chip),
+          values_(*chip_, std::string(name()), firmware) {
         for (const ChipWatch& watch : watches)
             looks_.push_back(look_of(watch));
     }
 
-    cosim::StatefulNode& board() override { return *board_; }
-    std::string_view name() const override { return board_->name(); }
-    std::span<const cosim::Port> ports() const override { return board_->ports(); }
     void advance(Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    Time earliest_output(cosim::PortIndex port) const override { return board_->earliest_output(port); }
-    Time lookahead(cosim::PortIndex port) const override { return board_->lookahead(port); }
-    std::optional<Time> begun(cosim::PortIndex port) const override { return board_->begun(port); }
-    std::optional<cosim::Stop> stop() const override { return board_->stop(); }
-    cosim::Rewindable* rewindable() override { return board_->rewindable() == nullptr ? nullptr : this; }
-    void renew_random_streams() override { board_->renew_random_streams(); }
+    cosim::Rewindable* rewindable() override { return board().rewindable() == nullptr ? nullptr : this; }
     void state(StateWriter& archive) const override;
     void state(StateReader& archive) override;
     std::string finish() override;
@@ -62,15 +54,14 @@ class WatchedNode final : public cosim::StatefulNode, public BoardAround, privat
     void look(Time now);
     void mark() override {
         marked_ = looks_;
-        board_->rewindable()->mark();
+        board().rewindable()->mark();
     }
     void rewind() override {
         looks_ = marked_;
-        board_->rewindable()->rewind();
+        board().rewindable()->rewind();
     }
-    void settle() override { board_->rewindable()->settle(); }
+    void settle() override { board().rewindable()->settle(); }
 
-    std::unique_ptr<cosim::StatefulNode> board_;
     std::unique_ptr<debug::DebugChip> chip_;
     ChipValues values_;
     std::vector<Look> looks_, marked_;
@@ -111,31 +102,26 @@ void WatchedNode::advance(Time until, std::span<const cosim::Message> inbox,
         for (const Look& one : looks_)
             due = std::min(due, one.due());
         if (due > until) break;
-        const auto later = std::find_if(inbox.begin(), inbox.end(),
-                                        [&](const cosim::Message& message) { return message.time >= due; });
-        const auto count = static_cast<std::size_t>(later - inbox.begin());
-        board_->advance(due, inbox.first(count), outbox);
-        inbox = inbox.subspan(count);
+        advance_part(due, inbox, outbox);
         look(due);
     }
-    board_->advance(until, inbox, outbox);
+    BoardAround::advance(until, inbox, outbox);
 }
 
 void WatchedNode::state(StateWriter& archive) const {
-    const cosim::StatefulNode& board = *board_;
-    board.state(archive);
+    BoardAround::state(archive);
     for (const Look& one : looks_)
         archive(one.next, one.seen, one.last, one.last_at);
 }
 
 void WatchedNode::state(StateReader& archive) {
-    board_->state(archive);
+    BoardAround::state(archive);
     for (Look& one : looks_)
         archive(one.next, one.seen, one.last, one.last_at);
 }
 
 std::string WatchedNode::finish() {
-    ordered_json report = ordered_json::parse(board_->finish());
+    ordered_json report = ordered_json::parse(BoardAround::finish());
     ordered_json& watches = report["watches"] = ordered_json::array();
     for (const Look& one : looks_) {
         ordered_json entry = ordered_json::object();

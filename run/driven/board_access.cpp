@@ -1,6 +1,7 @@
 #include "run/driven/board_access.h"
 
 #include "base/error.h"
+#include "debug/core_register.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -157,15 +158,13 @@ void BoardAccess::write_bytes(std::uint32_t address, const std::vector<std::uint
         node_.change_later([address, bytes](debug::DebugChip& later) { later.write_memory(address, bytes); });
 }
 
-void BoardAccess::write_register(std::string name, std::uint64_t value) {
+void BoardAccess::write_register(const std::string& name, std::uint64_t value) {
     debug::DebugChip& chip = node_.chip();
-    name = upper_case(name);
-    const auto registers = chip.registers();
-    for (std::size_t i = 0; i < registers.size(); ++i) {
-        if (upper_case(registers[i].name) != name) continue;
-        check_fits(value, registers[i].bits);
-        if (!chip.write_register(i, value))
-            throw InputError("", std::string(node_.name()), fmt::format("{} cannot be written", name));
+    if (const auto core = debug::core_register(name, chip)) {
+        check_fits(value, chip.registers()[*core].bits);
+        if (!chip.write_register(*core, value))
+            throw InputError("", std::string(node_.name()),
+                             fmt::format("{} cannot be written", debug::upper_case(name)));
         return;
     }
     const ordered_json there = values_.read_register(name);

@@ -32,7 +32,7 @@ class BoardAccess {
     void use_image(const std::string& file);
 
   private:
-    void write_register(std::string name, std::uint64_t value);
+    void write_register(const std::string& name, std::uint64_t value);
     void write_bytes(std::uint32_t address, const std::vector<std::uint8_t>& bytes);
     nlohmann::ordered_json stack() const;
     nlohmann::ordered_json interrupts() const;

@@ -6,25 +6,14 @@
 namespace puckloop::tools {
 
 DrivenNode::DrivenNode(std::unique_ptr<cosim::StatefulNode> board)
-    : board_(std::move(board)), chip_(chip_of(*board_)) {}
-
-cosim::Time DrivenNode::earliest_output(cosim::PortIndex port) const {
-    const cosim::Time earliest = board_->earliest_output(port);
-    const bool bus = board_->ports()[port].kind == cosim::PortKind::I2c;
-    return bus && earliest == cosim::kNever ? earliest : std::min(earliest, reached_);
-}
+    : BoardAround(std::move(board)), chip_(chip_of(this->board())) {}
 
 cosim::Time DrivenNode::next_instruction() const {
     return std::max(reached_, chip_.clock->time_of(chip_.chip->cycle()));
 }
 
-void DrivenNode::state(StateWriter& archive) const {
-    const cosim::StatefulNode& board = *board_;
-    board.state(archive);
-}
-
 void DrivenNode::state(StateReader& archive) {
-    board_->state(archive);
+    BoardAround::state(archive);
     reached_ = chip_.granted();
 }
 
@@ -48,7 +37,7 @@ void DrivenNode::advance(cosim::Time until, std::span<const cosim::Message> inbo
                          std::vector<cosim::Message>& outbox) {
     const bool watched = !changes_.empty() || counts_;
     if (watched) chip_.chip->set_instrument(this, false);
-    board_->advance(until, inbox, outbox);
+    BoardAround::advance(until, inbox, outbox);
     if (watched) chip_.chip->set_instrument(nullptr, false);
     reached_ = until;
     if (stop_wanted_) stop_ = std::exchange(stop_wanted_, std::nullopt);

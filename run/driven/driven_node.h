@@ -2,8 +2,8 @@
 // A board of a run that a client drives: between two advances the client may read and change its chip, and
 // end the run.
 
-#include "cosim/core/stateful_node.h"
 #include "emu/chip/instrument.h"
+#include "run/chips/board_around.h"
 #include "run/chips/board_chip.h"
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace puckloop::tools {
 
-class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
+class DrivenNode final : public BoardAround, private chip::Instrument {
   public:
     explicit DrivenNode(std::unique_ptr<cosim::StatefulNode> board);
 
@@ -43,18 +43,13 @@ class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
     /// The run ends with this at the node's next advance.
     void ask_to_stop(cosim::Stop stop) { stop_wanted_ = std::move(stop); }
 
-    std::string_view name() const override { return board_->name(); }
-    std::span<const cosim::Port> ports() const override { return board_->ports(); }
-    /// The client may change the chip at any instant, which then sends earlier than it would have. Only a
-    /// bus's next phase waits for the answer to the last one all the same.
-    cosim::Time earliest_output(cosim::PortIndex port) const override;
-    cosim::Time lookahead(cosim::PortIndex port) const override { return board_->lookahead(port); }
-    std::optional<cosim::Time> begun(cosim::PortIndex port) const override { return board_->begun(port); }
+    /// The client may change the chip at any instant.
+    cosim::Time earliest_output(cosim::PortIndex port) const override {
+        return earliest_if_changed(port, reached_);
+    }
     std::optional<cosim::Stop> stop() const override { return stop_; }
-    void state(StateWriter& archive) const override;
+    using BoardAround::state;
     void state(StateReader& archive) override;
-    void renew_random_streams() override { board_->renew_random_streams(); }
-    std::string finish() override { return board_->finish(); }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
 
@@ -65,7 +60,6 @@ class DrivenNode final : public cosim::StatefulNode, private chip::Instrument {
 
     std::vector<std::function<void(debug::DebugChip&)>> changes_;
     std::optional<InterruptCounts> counts_;
-    std::unique_ptr<cosim::StatefulNode> board_;
     BoardChip chip_;
     cosim::Time reached_ = 0;
     std::optional<cosim::Stop> stop_, stop_wanted_;

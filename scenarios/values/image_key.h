@@ -15,7 +15,8 @@ namespace puckloop::scenarios {
 /// works. Throws InputError where the key is missing and where a text without dot and slash is neither.
 std::filesystem::path read_firmware(Reader& reader, std::string_view board);
 
-/// The same of a text alone, relative to `folder` (empty: the working directory); `board` may be "tam" too.
+/// The same of a text alone, relative to `folder` (empty: the working directory); `board` may be
+/// "tam" too, or "" for files and names of files alone.
 /// Empty: it is no shipped image, and no such file is there.
 std::filesystem::path firmware_named(const std::filesystem::path& folder, const std::string& text,
                                      std::string_view board);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/shipped_files.h"
 #include "emu/image/chip_guess.h"
+#include "scenarios/values/image_key.h"
 
 namespace puckloop::tools {
 
@@ -32,10 +33,8 @@ std::filesystem::path scenario_named(const std::filesystem::path& given) {
 }
 
 std::string image_named(const std::string& given) {
-    std::error_code error;
-    if (given.empty() || std::filesystem::exists(given, error)) return given;
-    const std::filesystem::path shipped = shipped_image(given);
-    return shipped.empty() ? given : shipped.string();
+    const std::filesystem::path there = given.empty() ? "" : scenarios::firmware_named({}, given, "");
+    return there.empty() ? given : there.string();
 }
 
 std::filesystem::path mission_named(const std::filesystem::path& given) {
