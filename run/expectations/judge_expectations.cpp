@@ -1,11 +1,11 @@
 #include "run/expectations/judge_expectations.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "physics/render/path_file.h"
 #include "run/expectations/judge_frames.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

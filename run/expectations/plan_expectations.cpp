@@ -55,6 +55,15 @@ Names names_for(const RunSetup& setup, Kind kind) {
     return names;
 }
 
+/// Who may send what is expected: of a line its two ends.
+Names senders(const RunSetup& setup, const Expectation& expected) {
+    if (expected.kind != Kind::Line) return node_names(setup, false);
+    Names names{"end of that line", {}};
+    for (const cosim::LinkSpec& link : setup.links)
+        if (link.name == expected.subject) names.known = {link.a.node, link.b.node};
+    return names;
+}
+
 void check(const RunSetup& setup, const Expectation& expected, const std::string& name, const Names& names) {
     constexpr std::size_t kShown = 12;
     if (std::find(names.known.begin(), names.known.end(), name) != names.known.end()) return;
@@ -92,7 +101,7 @@ void watch(RunSetup& setup, const RunRequest& request, const Expectation& expect
 void plan_expectations(RunSetup& setup, const RunRequest& request) {
     for (const Expectation& expected : setup.scenario.expectations) {
         check(setup, expected, expected.subject, names_for(setup, expected.kind));
-        if (!expected.from.empty()) check(setup, expected, expected.from, node_names(setup, false));
+        if (!expected.from.empty()) check(setup, expected, expected.from, senders(setup, expected));
         if (expected.kind == Kind::Value) watch(setup, request, expected);
     }
 }

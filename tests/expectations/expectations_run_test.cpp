@@ -94,7 +94,8 @@ TEST_CASE("expectations of what there is not are refused before the run") {
     refused("frame = \"epuk\"\n", {"there is no protocol 'epuk'", "epuck"});
     refused("no_loss = \"robot0.i2c\"\n", {"there is no serial line 'robot0.i2c'", "robot0.uart"});
     refused("link = \"robot0.i2c\"\nbytes = \"00\"\n", {"there is no serial line 'robot0.i2c'"});
-    refused("link = \"robot0.uart\"\nbytes = \"00\"\nfrom = \"linux\"\n", {"there is no node 'linux'"});
+    refused("link = \"robot0.uart\"\nbytes = \"00\"\nfrom = \"linux\"\n",
+            {"there is no end of that line 'linux'", "one of robot0.linux, robot0.pic"});
     refused("robot = \"robo0\"\ncentre = [\"0 m\", \"0 m\"]\nsize = [\"1 m\", \"1 m\"]\n",
             {"there is no robot 'robo0'", "robot0"});
     check_one_line(bench.run("o", {bench.hello(), "--duration", "1", "--junit", "/nowhere/x.xml"}), 2,
