@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 
 namespace puckloop {
 
@@ -67,9 +66,9 @@ std::string csv_text(std::span<const CsvColumn> columns, int digits) {
             const double value = columns[c].values[row];
             if (std::isnan(value)) continue;
             if (digits > 0)
-                fmt::format_to(std::back_inserter(text), "{:.{}g}", value, digits);
+                text += fmt::format("{:.{}g}", value, digits);
             else
-                fmt::format_to(std::back_inserter(text), "{}", value);
+                text += fmt::format("{}", value);
         }
         text += '\n';
     }

@@ -11,7 +11,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
 namespace puckloop::cosim {
@@ -48,7 +47,7 @@ void put_value(std::string& out, double value) {
     if (!std::signbit(value) && value < kWhole && value == std::trunc(value))
         put_number(out, static_cast<std::uint64_t>(value));
     else
-        fmt::format_to(std::back_inserter(out), "{}", value);
+        out += fmt::format("{}", value);
 }
 
 void put_seconds(std::string& out, Time time) {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 
 namespace puckloop::image {
@@ -156,13 +155,12 @@ class HexReader {
 void append_record(std::string& text, std::uint32_t offset, RecordType type, const std::uint8_t* data,
                    std::size_t length) {
     unsigned sum = static_cast<unsigned>(length) + (offset >> 8) + (offset & 0xFF) + type;
-    fmt::format_to(std::back_inserter(text), ":{:02X}{:04X}{:02X}", length, offset,
-                   static_cast<unsigned>(type));
+    text += fmt::format(":{:02X}{:04X}{:02X}", length, offset, static_cast<unsigned>(type));
     for (std::size_t i = 0; i < length; ++i) {
         sum += data[i];
-        fmt::format_to(std::back_inserter(text), "{:02X}", data[i]);
+        text += fmt::format("{:02X}", data[i]);
     }
-    fmt::format_to(std::back_inserter(text), "{:02X}\n", (0u - sum) & 0xFF);
+    text += fmt::format("{:02X}\n", (0u - sum) & 0xFF);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 
 namespace puckloop::physics {
 
@@ -51,8 +50,8 @@ std::string FloorImage::text() const {
     std::string result = fmt::format("{}", width_);
     for (auto from = pixels_->begin(); from != pixels_->end();) {
         const auto to = std::find_if(from, pixels_->end(), [&](const Rgb& other) { return other != *from; });
-        fmt::format_to(std::back_inserter(result), " {:02x}{:02x}{:02x}", (*from)[0], (*from)[1], (*from)[2]);
-        if (to - from > 1) fmt::format_to(std::back_inserter(result), "*{}", to - from);
+        result += fmt::format(" {:02x}{:02x}{:02x}", (*from)[0], (*from)[1], (*from)[2]);
+        if (to - from > 1) result += fmt::format("*{}", to - from);
         from = to;
     }
     return result;

@@ -40,14 +40,13 @@ class Listing {
         std::string out;
         std::uint32_t expected = kProgramBytes;
         each_piece([&](const Piece& piece) {
-            if (piece.address != expected)
-                fmt::format_to(std::back_inserter(out), "        .org 0x{:x}\n", piece.address);
+            if (piece.address != expected) out += fmt::format("        .org 0x{:x}\n", piece.address);
             expected = piece.address + piece.bytes;
             for (auto [name, last] = names_.equal_range(piece.address); name != last; ++name)
-                fmt::format_to(std::back_inserter(out), "{}:\n", name->second);
-            fmt::format_to(std::back_inserter(out), "        {:<{}}; {:05x}: {:04x}", piece.text,
-                           kCommentColumn - 8, piece.address, piece.word);
-            if (piece.bytes == 4) fmt::format_to(std::back_inserter(out), " {:04x}", piece.next);
+                out += fmt::format("{}:\n", name->second);
+            out += fmt::format("        {:<{}}; {:05x}: {:04x}", piece.text, kCommentColumn - 8,
+                               piece.address, piece.word);
+            if (piece.bytes == 4) out += fmt::format(" {:04x}", piece.next);
             out += '\n';
         });
         return out;

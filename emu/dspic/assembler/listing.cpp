@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 
 namespace puckloop::dspic {
@@ -41,8 +40,7 @@ class Lister {
         std::uint32_t expected = 0;
         for (std::size_t i = 0; i < items_.size();) {
             const Item& item = items_[i];
-            if (item.address != expected)
-                fmt::format_to(std::back_inserter(text_), "\n        .org      {:#x}\n", item.address);
+            if (item.address != expected) text_ += fmt::format("\n        .org      {:#x}\n", item.address);
             write_labels(item.address);
             const std::size_t repeats = run_length(i);
             if (repeats >= kShortestFill) {
@@ -116,7 +114,7 @@ class Lister {
     void write_labels(std::uint32_t address) {
         const auto [first, last] = labels_.equal_range(address);
         for (auto at = first; at != last; ++at)
-            fmt::format_to(std::back_inserter(text_), "{}:\n", at->second);
+            text_ += fmt::format("{}:\n", at->second);
     }
 
     std::size_t run_length(std::size_t i) const {
@@ -138,8 +136,8 @@ class Lister {
         text_ += content;
         const std::size_t used = text_.size() - start;
         text_.append(used < kCommentColumn ? kCommentColumn - used : 1, ' ');
-        fmt::format_to(std::back_inserter(text_), "; {:06x}: {:06x}", item.address, item.word);
-        if (second) fmt::format_to(std::back_inserter(text_), " {:06x}", item.next);
+        text_ += fmt::format("; {:06x}: {:06x}", item.address, item.word);
+        if (second) text_ += fmt::format(" {:06x}", item.next);
         text_ += '\n';
     }
 
