@@ -1,9 +1,9 @@
 #include "bench/exec_report.h"
 
+#include "base/json.h"
 #include "emu/board/chip_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::exec {
 

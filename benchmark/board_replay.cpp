@@ -1,13 +1,13 @@
 #include "benchmark/board_replay.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "cosim/interrupt.h"
 #include "cosim/resume/state_file.h"
 #include "run/factory/node_factory.h"
 #include "run/run_scenario.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -23,8 +23,6 @@ namespace puckloop::tools {
 namespace {
 
 constexpr const char* kRealTime = "x real time";
-/// A name that children of this process do not see change when the program is built anew meanwhile.
-constexpr const char* kSelf = "/proc/self/exe";
 
 }  // namespace
 
@@ -40,9 +38,9 @@ Kit::~Kit() {
 }
 
 std::filesystem::path Kit::own_program() {
-    std::error_code error;
-    const auto path = std::filesystem::read_symlink(kSelf, error);
-    return error ? std::filesystem::path(kSelf) : path;
+    const std::filesystem::path path = shipped_program("puckloop", "tools");
+    // An installed one is in bin, beside the folder of this program's.
+    return path.empty() ? shipped_program("puckloop", "bin") : path;
 }
 
 std::filesystem::path Kit::shipped(const std::string& scenario) {

@@ -1,10 +1,10 @@
 #include "benchmark/figure.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/quantile.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

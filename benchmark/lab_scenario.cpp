@@ -1,11 +1,11 @@
 #include "benchmark/lab_scenario.h"
 
+#include "base/json.h"
 #include "benchmark/scenario_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 namespace puckloop::tools {

@@ -1,10 +1,10 @@
 #include "benchmark/timed_run.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "cosim/interrupt.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,10 +1,10 @@
 // The case "wait" of `puckloop bench`: images on the main board that wait for a partner who sends nothing.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "benchmark/case_kit.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>

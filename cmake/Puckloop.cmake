@@ -6,6 +6,8 @@ target_compile_options(puckloop_options INTERFACE -Wall -Wextra -Wpedantic $<$<C
                                                   -Wold-style-cast -Woverloaded-virtual -Werror)
 # Everything is position independent for the preload library; nobody interposes our own functions, so those of one file may be inlined.
 target_compile_options(puckloop_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
+# GCC collects its garbage from some 130 MB on, which a file with headers precompiled has at once: again and again, in vain.
+target_compile_options(puckloop_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=393216>)
 
 option(PUCKLOOP_ASAN "Build with the address and undefined-behaviour sanitizers" OFF)
 if(PUCKLOOP_ASAN)
@@ -48,6 +50,19 @@ target_compile_definitions(puckloop_options INTERFACE $<TARGET_PROPERTY:fmt::fmt
 add_library(puckloop_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
 target_link_libraries(puckloop_precompiled PRIVATE puckloop_options)
 target_precompile_headers(puckloop_precompiled PRIVATE ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
+# Once more with the JSON library, whose headers take longer to read than all of those.
+find_package(nlohmann_json REQUIRED)
+add_library(puckloop_precompiled_json OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+target_link_libraries(puckloop_precompiled_json PRIVATE puckloop_options nlohmann_json::nlohmann_json)
+target_precompile_headers(puckloop_precompiled_json PRIVATE ${CMAKE_CURRENT_LIST_DIR}/precompiled.h ${PROJECT_SOURCE_DIR}/base/json.h)
+# Those of the two that `name`, which links the rest, is compiled with.
+function(puckloop_precompile name)
+  puckloop_variant(${name} variant)
+  if(NOT variant AND "puckloop_json" IN_LIST ARGN)
+    set(variant _json)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM puckloop_precompiled${variant})
+endfunction()
 if(PUCKLOOP_SANITIZED)
   add_library(puckloop_precompiled_sanitized OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
   target_link_libraries(puckloop_precompiled_sanitized PRIVATE puckloop_options)
@@ -85,7 +100,7 @@ function(puckloop_library name)
   if(variant)
     puckloop_sanitize(${name})
   endif()
-  target_precompile_headers(${name} REUSE_FROM puckloop_precompiled${variant})
+  puckloop_precompile(${name} ${ARG_LINK})
   puckloop_unity(${name})
 endfunction()
 

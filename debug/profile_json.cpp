@@ -1,9 +1,9 @@
 // A profile for programs: "stats" of `exec --json` and of a node in report.json.
 
+#include "base/json.h"
 #include "debug/profile.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::debug {
 

@@ -1,9 +1,9 @@
 // The result of a self test as text and as JSON.
 
+#include "base/json.h"
 #include "selftest/score.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <map>

@@ -5,6 +5,7 @@
 #include "tools/cli/command.h"
 
 #include <array>
+#include <optional>
 
 namespace puckloop::tools {
 
@@ -26,12 +27,12 @@ void declare_frames(Command& app, int& status);
 void declare_faults(Command& app, int& status);
 void declare_experiment(Command& app, int& status);
 void declare_upload(Command& app, int& status);
-void declare_gap(Command& app, int& status);  ///< its line of the help
-void declare_bench(Command& app, int& status);
+/// The lines in the help of what become_other() becomes.
+void declare_other_programs(Command& app, int& status);
 
-/// Replaces this process by puckloop-gap with the same words; returns, with status 2, only where it is not
-/// built.
-int become_gap(char** words);
+/// `bench` and `gap`: replaces this process by puckloop-bench or puckloop-gap with the same words. Returns 2,
+/// an exit status, where that is not built, and nothing for other commands.
+std::optional<int> become_other(int argc, char** argv);
 
 // clang-format off
 inline constexpr std::array kCommands{
@@ -53,8 +54,7 @@ inline constexpr std::array kCommands{
     declare_faults,
     declare_experiment,
     declare_upload,
-    declare_gap,
-    declare_bench,
+    declare_other_programs,
 };
 // clang-format on
 

@@ -1,4 +1,4 @@
-// puckloop: a table of subcommands. `gap` is a program of its own (tools/gap).
+// puckloop: a table of subcommands. `bench` and `gap` are programs of their own (tools/bench, tools/gap).
 
 #include "run/factory/node_process.h"
 #include "run/plan/linux_arguments.h"
@@ -9,8 +9,6 @@
 #include "tools/guide/guide.h"
 
 #include <array>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace puckloop::tools {
@@ -43,17 +41,7 @@ std::vector<DeclareCommand> all_commands() {
 int run(int argc, char** argv) {
     survive_file_size_limit();
     if (const auto status = serve_as_node(argc, argv)) return *status;
-    if (argc > 1 && std::string_view(argv[1]) == "gap") return become_gap(argv);
-    if (argc > 2 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "gap") {
-        std::vector<std::string> words{argv[0], "gap"};
-        words.insert(words.end(), argv + 3, argv + argc);
-        words.emplace_back("--help");
-        std::vector<char*> pointers;
-        for (std::string& word : words)
-            pointers.push_back(word.data());
-        pointers.push_back(nullptr);
-        return become_gap(pointers.data());
-    }
+    if (const auto status = become_other(argc, argv)) return *status;
     return run_program(all_commands(), pack_linux_arguments({argv + 1, argv + argc}), kHeadings);
 }
 

@@ -4,9 +4,8 @@
 // Which protocol a UART speaks is read from the names of its ends: an XBee module ("tam0.xbee"), a robot's
 // main board ("robot0.pic"); anything else is shown as bytes sent without a pause.
 
+#include "base/json.h"
 #include "traces/recorded_trace.h"
-
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <functional>

@@ -1,12 +1,11 @@
 #include "view/answers.h"
 
+#include "base/json.h"
 #include "view/live/network_status.h"
 #include "view/page_parts.h"
 #include "view/recording/bytes.h"
 #include "view/recording/camera_pictures.h"
 #include "view/recording/serial_bytes.h"
-
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <span>

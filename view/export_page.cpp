@@ -1,12 +1,12 @@
 #include "view/export_page.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "view/page_parts.h"
 #include "view/recording/bytes.h"
 #include "view/recording/camera_pictures.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <zlib.h>
 
 #include <span>

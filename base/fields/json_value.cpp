@@ -1,6 +1,6 @@
 #include "base/fields/json_value.h"
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <algorithm>
 #include <limits>

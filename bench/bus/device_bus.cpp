@@ -1,13 +1,12 @@
 #include "bench/bus/device_bus.h"
 
+#include "base/json.h"
 #include "cosim/i2c/i2c_bus.h"
 #include "emu/i2c_devices/ground_sensor.h"
 #include "emu/i2c_devices/lsm330.h"
 #include "emu/i2c_devices/rgb_turret.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/rab_board/rab_node.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

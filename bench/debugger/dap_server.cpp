@@ -1,12 +1,12 @@
 #include "bench/debugger/dap_server.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggest.h"
 #include "bench/debugger/dap_channel.h"
 #include "bench/debugger/dap_views.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <csignal>

@@ -1,9 +1,9 @@
 #include "bench/debugger/dap_views.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

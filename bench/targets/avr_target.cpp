@@ -2,12 +2,12 @@
 
 #include "debug/debug_chip.h"
 
+#include "base/json.h"
 #include "emu/avr/chip/crash_text.h"
 #include "emu/board/nvm_file.h"
 #include "emu/board/place_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::exec {
 

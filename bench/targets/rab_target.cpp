@@ -2,13 +2,12 @@
 // master the `--i2c` script.
 
 #include "base/archive.h"
+#include "base/json.h"
 #include "bench/targets/dspic_target.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_json.h"
 #include "emu/rab_board/rab_log.h"
 #include "protocols/uart_sampling.h"
-
-#include <nlohmann/json.hpp>
 
 #include <optional>
 

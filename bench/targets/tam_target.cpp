@@ -2,11 +2,10 @@
 // the debug console, uart2 the socket of the radio module.
 
 #include "base/archive.h"
+#include "base/json.h"
 #include "bench/targets/avr_target.h"
 #include "emu/tam_avr/board.h"
 #include "emu/tam_avr/fuse_check.h"
-
-#include <nlohmann/json.hpp>
 
 namespace puckloop::exec {
 

@@ -4,6 +4,7 @@
 
 #include "debug/debug_chip.h"
 
+#include "base/json.h"
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"
 #include "emu/board/nvm_file.h"
@@ -11,7 +12,6 @@
 #include "emu/image/device.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <stdexcept>
 

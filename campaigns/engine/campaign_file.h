@@ -1,9 +1,8 @@
 #pragma once
 // A campaign as its file describes it (docs/faults.md).
 
+#include "base/json.h"
 #include "base/toml_file.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <filesystem>

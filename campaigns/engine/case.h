@@ -1,7 +1,7 @@
 #pragma once
 // One run of a campaign: which faults, with which seed.
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,7 @@
 #include "campaigns/engine/case_run.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/text_file.h"
 #include "campaigns/jobs/full_disk.h"
 #include "campaigns/jobs/isolated.h"
@@ -12,7 +13,6 @@
 #include "scenarios/reader/read_scenario.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 

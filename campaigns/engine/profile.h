@@ -1,7 +1,7 @@
 #pragma once
 // What a run did, from its results folder: as much as an outcome is judged by.
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <cstdint>
 #include <filesystem>

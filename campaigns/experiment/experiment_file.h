@@ -1,7 +1,7 @@
 #pragma once
 // An experiment file: which programs under which conditions, how often (docs/swarm.md).
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 // An SQLite file of a campaign or experiment: each result committed when it comes.
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,9 +1,8 @@
 #pragma once
 // The files that a run's results depend on, each with its hash.
 
+#include "base/json.h"
 #include "scenarios/description/scenario.h"
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // A unit of work that some worker carries out: one run of a campaign or of an experiment.
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <functional>
 #include <string>

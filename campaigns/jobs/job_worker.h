@@ -1,7 +1,7 @@
 #pragma once
 // The loop of a worker: locally it takes jobs from its standard input, in a job array from a file.
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <filesystem>
 #include <functional>

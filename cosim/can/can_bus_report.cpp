@@ -1,11 +1,11 @@
 // What a CAN bus reports of itself: its controllers' states in the log, counters and warnings.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/times_text.h"
 #include "cosim/can/can_bus.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

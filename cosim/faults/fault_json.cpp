@@ -1,11 +1,11 @@
 #include "cosim/faults/fault_json.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/plain_text.h"
 #include "cosim/faults/node_fault.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::cosim {
 

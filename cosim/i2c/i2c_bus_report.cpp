@@ -1,11 +1,11 @@
 // What the I2C bus reports of itself: its devices, counters and warnings.
 
+#include "base/json.h"
 #include "base/times_text.h"
 #include "cosim/i2c/i2c_bus.h"
 #include "cosim/i2c/i2c_figures.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::cosim {
 

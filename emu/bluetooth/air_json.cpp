@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/fields/json.h"
+#include "base/json.h"
 #include "emu/bluetooth/air_node.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 

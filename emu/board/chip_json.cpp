@@ -1,10 +1,10 @@
 #include "emu/board/chip_json.h"
 
+#include "base/json.h"
 #include "emu/board/chip_warnings.h"
 #include "emu/board/place_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::board {
 

@@ -1,9 +1,8 @@
 #include "emu/board/fault_parts.h"
 
+#include "base/json.h"
 #include "emu/image/avr_image.h"
 #include "emu/image/image.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <iterator>

@@ -1,9 +1,8 @@
 #pragma once
 // A record of a report, with the place in the program it is about.
 
+#include "base/json.h"
 #include "emu/image/code_places.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <string>

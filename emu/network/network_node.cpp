@@ -1,6 +1,6 @@
 #include "emu/network/network_node.h"
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,9 @@
 #include "emu/pic/pic_node.h"
 
+#include "base/json.h"
 #include "cosim/i2c/i2c_shared.h"
 #include "emu/board/chip_json.h"
 #include "emu/camera/frame_log.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

@@ -1,8 +1,7 @@
 #include "emu/rab_board/rab_json.h"
 
+#include "base/json.h"
 #include "emu/board/chip_json.h"
-
-#include <nlohmann/json.hpp>
 
 namespace puckloop::rab {
 

@@ -1,8 +1,7 @@
 #include "emu/rab_board/rab_node.h"
 
+#include "base/json.h"
 #include "emu/rab_board/rab_json.h"
-
-#include <nlohmann/json.hpp>
 
 namespace puckloop::rab {
 

@@ -1,10 +1,10 @@
 #include "emu/tam_avr/tam_json.h"
 
+#include "base/json.h"
 #include "emu/avr/chip/crash_text.h"
 #include "emu/board/place_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::tam {
 

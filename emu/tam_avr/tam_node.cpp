@@ -1,10 +1,9 @@
 #include "emu/tam_avr/tam_node.h"
 
+#include "base/json.h"
 #include "emu/tam_avr/fuse_check.h"
 #include "emu/tam_avr/tam_json.h"
 #include "protocols/uart_sampling.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

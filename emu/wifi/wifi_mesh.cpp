@@ -2,11 +2,11 @@
 // all are passed on by every station once.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/new_file.h"
 #include "emu/wifi/wifi_node.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

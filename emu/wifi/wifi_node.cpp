@@ -1,10 +1,10 @@
 #include "emu/wifi/wifi_node.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/new_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
+#include "base/json.h"
 #include "emu/xbee/module_node.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::xbee {
 

@@ -5,11 +5,11 @@
 // and are left out, as are the start-up times, which are no loop.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "gap/importers/importers.h"
 #include "gap/importers/text_table.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

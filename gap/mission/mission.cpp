@@ -1,10 +1,10 @@
 #include "gap/mission/mission.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "gap/verdict/verdict.h"
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <algorithm>
 #include <iterator>

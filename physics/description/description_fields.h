@@ -1,9 +1,8 @@
 #pragma once
 // The fields of the description's structs as JSON. Only files that write or read JSON include this.
 
+#include "base/json.h"
 #include "physics/description/description.h"
-
-#include <nlohmann/json.hpp>
 
 namespace puckloop::physics {
 

@@ -1,9 +1,9 @@
 #include "physics/events/timeline.h"
 
+#include "base/json.h"
 #include "protocols/rc5.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

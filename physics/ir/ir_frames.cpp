@@ -1,7 +1,7 @@
 #include "physics/ir/ir_frames.h"
 
+#include "base/json.h"
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -2,6 +2,7 @@
 
 #include "base/checkpoint.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "physics/description/robot_parameters.h"
 #include "physics/ir/ir_faults.h"
 #include "physics/ir/ir_frames.h"
@@ -10,7 +11,6 @@
 #include "physics/world/pose_signals.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

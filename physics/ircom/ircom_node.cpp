@@ -2,11 +2,10 @@
 
 #include "base/checkpoint.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "physics/ircom/comparator.h"
 #include "physics/ircom/faults.h"
 #include "physics/ircom/words.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <deque>

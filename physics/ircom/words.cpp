@@ -1,7 +1,7 @@
 #include "physics/ircom/words.h"
 
+#include "base/json.h"
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

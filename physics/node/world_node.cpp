@@ -1,5 +1,6 @@
 #include "physics/node/world_node.h"
 
+#include "base/json.h"
 #include "physics/camera/camera_port.h"
 #include "physics/events/timeline.h"
 #include "physics/node/booth_link.h"
@@ -10,8 +11,6 @@
 #include "physics/world/recorder.h"
 #include "physics/world/world_log.h"
 #include "protocols/ip_packet.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <map>

@@ -1,10 +1,10 @@
 #include "physics/render/arena_file.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/text_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::physics {
 

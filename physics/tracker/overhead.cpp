@@ -1,6 +1,6 @@
 #include "physics/tracker/overhead.h"
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <utility>
 

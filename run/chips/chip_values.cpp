@@ -1,13 +1,13 @@
 #include "run/chips/chip_values.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggest.h"
 #include "debug/core_register.h"
 #include "emu/image/symbol_sizes.h"
 #include "run/chips/image_names.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string_view>

@@ -1,12 +1,11 @@
 #include "run/chips/profiled_node.h"
 
+#include "base/json.h"
 #include "debug/profile.h"
 #include "emu/image/symbol_sizes.h"
 #include "run/chips/board_around.h"
 #include "run/chips/board_chip.h"
 #include "run/chips/image_names.h"
-
-#include <nlohmann/json.hpp>
 
 #include <utility>
 

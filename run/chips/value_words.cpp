@@ -1,9 +1,9 @@
 #include "run/chips/value_words.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <exception>

@@ -1,12 +1,11 @@
 #include "run/chips/watched_node.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/chips/board_around.h"
 #include "run/chips/board_chip.h"
 #include "run/chips/chip_values.h"
 #include "run/chips/value_words.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <optional>

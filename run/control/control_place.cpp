@@ -1,11 +1,11 @@
 #include "run/control/control_place.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/text_file.h"
 #include "run/control/control_socket.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <signal.h>
 #include <sys/stat.h>

@@ -1,6 +1,7 @@
 #include "run/control/control_socket.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "scenarios/reader/events/event_tables.h"
 
 #include <boost/asio/io_context.hpp>
@@ -8,7 +9,6 @@
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
 

@@ -1,10 +1,10 @@
 #include "run/driven/board_access.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "debug/core_register.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string_view>

@@ -2,10 +2,9 @@
 // What the client of a driven run reads and writes of a board: registers by their data-sheet names, variables
 // by the image's symbols, memory by address of data space.
 
+#include "base/json.h"
 #include "run/chips/chip_values.h"
 #include "run/driven/driven_node.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <string>

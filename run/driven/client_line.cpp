@@ -1,9 +1,9 @@
 #include "run/driven/client_line.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <poll.h>
 #include <sys/socket.h>

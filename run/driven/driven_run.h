@@ -11,6 +11,7 @@
 // executed from its beginning. What it types into serial lines is a fault of its own kind, `type`, what it
 // flashes into boards one of the kind `flash`: going back takes both away.
 
+#include "base/json.h"
 #include "cosim/conductor.h"
 #include "cosim/resume/run_snapshot.h"
 #include "cosim/trace/trace_csv.h"
@@ -23,8 +24,6 @@
 #include "run/driven/world_commands.h"
 #include "run/expectations/line_watch.h"
 #include "run/past/run_history.h"
-
-#include <nlohmann/json.hpp>
 
 #include <csignal>
 #include <functional>

@@ -1,10 +1,9 @@
 #pragma once
 // What a client sees of the lines of a run: frames that it captures, and those that a step waits for.
 
+#include "base/json.h"
 #include "cosim/trace/trace.h"
 #include "run/expectations/byte_match.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <string>

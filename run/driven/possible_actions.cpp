@@ -1,11 +1,10 @@
 #include "run/driven/possible_actions.h"
 
+#include "base/json.h"
 #include "physics/description/parameters.h"
 #include "physics/events/new_thing.h"
 #include "physics/robot/tuning.h"
 #include "scenarios/reader/events/action_forms.h"
-
-#include <nlohmann/json.hpp>
 
 #include <span>
 #include <string>

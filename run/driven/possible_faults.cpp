@@ -1,9 +1,8 @@
 #include "run/driven/possible_faults.h"
 
+#include "base/json.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "scenarios/reader/faults/fault_places.h"
-
-#include <nlohmann/json.hpp>
 
 namespace puckloop::tools {
 

@@ -1,10 +1,10 @@
 #include "run/driven/words.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/chips/value_words.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <regex>
 #include <sstream>

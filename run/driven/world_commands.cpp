@@ -1,10 +1,10 @@
 #include "run/driven/world_commands.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "scenarios/reader/events/event_tables.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <sys/socket.h>
 #include <sys/un.h>

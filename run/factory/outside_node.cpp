@@ -1,6 +1,7 @@
 #include "run/factory/outside_node.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/new_file.h"
 #include "ends/script_end.h"
 #include "ends/scripts.h"
@@ -8,7 +9,6 @@
 #include "protocols/uart_sampling.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 #include "run/mission/mission_lines.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/plain_text.h"
 #include "base/suggest.h"
 #include "scenarios/reader/events/event_tables.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>

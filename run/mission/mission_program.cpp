@@ -1,12 +1,12 @@
 #include "run/mission/mission_program.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/plain_text.h"
 #include "cosim/remote/child_process.h"
 #include "run/mission/mission_lines.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,6 +1,7 @@
 #include "run/plan/state_plan.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "cosim/resume/state_file.h"
 #include "run/factory/node_factory.h"
 #include "run/files/writable_file.h"
@@ -8,7 +9,6 @@
 #include "run/states/boot_cache.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>

@@ -1,9 +1,9 @@
 #include "run/plan/stats_plan.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::tools {
 

@@ -1,7 +1,7 @@
 #include "run/report/failures.h"
 
+#include "base/json.h"
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

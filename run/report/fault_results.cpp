@@ -1,6 +1,7 @@
 #include "run/report/fault_results.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/new_file.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_facts.h"
@@ -8,7 +9,6 @@
 #include "run/plan/node_faults.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <fstream>

@@ -1,11 +1,11 @@
 #include "run/report/mission_score.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "missions/scorer.h"
 #include "physics/render/path_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,9 @@
 #include "run/report/provenance.h"
 
+#include "base/json.h"
 #include "base/sha256.h"
 #include "base/version/version.h"
 #include "cosim/faults/spec/flash.h"
-
-#include <nlohmann/json.hpp>
 
 #include <fstream>
 #include <map>

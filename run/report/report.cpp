@@ -2,6 +2,7 @@
 #include "run/report/failures.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/plan/state_plan.h"
 #include "run/plan/stats_plan.h"
 #include "run/report/fault_results.h"
@@ -9,7 +10,6 @@
 #include "run/report/supply_resets.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
 #include "run/report/supply_resets.h"
 
+#include "base/json.h"
 #include "base/times_text.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <map>
 #include <vector>

@@ -1,12 +1,12 @@
 #include "run/snapshots/origin.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/plain_text.h"
 #include "base/sha256.h"
 #include "cosim/faults/fault_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

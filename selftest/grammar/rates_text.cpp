@@ -2,11 +2,11 @@
 #include "selftest/grammar/rates.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "selftest/grammar/ablation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <map>

@@ -2,12 +2,12 @@
 // Modules with hosts at their serial lines, as the node of a run has them: what a host sends goes in as
 // characters, what its module answers comes out as packets and bytes with their times.
 
+#include "base/json.h"
 #include "emu/bluetooth/air_node.h"
 #include "protocols/lmx9820_packet.h"
 #include "protocols/uart_sampling.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string>

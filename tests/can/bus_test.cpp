@@ -1,11 +1,11 @@
 // The bus as a node: what controllers send and get, its promises to the conductor, what it reports.
 
+#include "base/json.h"
 #include "cosim/can/can_bus.h"
 #include "cosim/can/can_message.h"
 #include "tests/can/wire_bench.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using namespace puckloop::cosim;

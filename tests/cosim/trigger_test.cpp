@@ -2,12 +2,12 @@
 
 #include "base/archive.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "cosim/faults/evidence.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/trigger.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <vector>
 

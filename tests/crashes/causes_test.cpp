@@ -3,6 +3,7 @@
 // report has to say the same. Sources: dsPIC30F Family Reference Manual, sections 6 and 8; DS70286, section
 // 6; ATmega1284P data sheet, "System Control and Reset".
 
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/avr/devices/device.h"
@@ -14,7 +15,6 @@
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,12 +1,12 @@
 #include "tests/debug/drawn_reads.h"
 
+#include "base/json.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/avr/devices/device.h"
 #include "tests/exec/command.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <set>

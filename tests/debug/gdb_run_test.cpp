@@ -1,10 +1,10 @@
 // `run --gdb NODE=PLACE`: a board of a run stands still, and everybody with it; the trace stays.
 
+#include "base/json.h"
 #include "tests/debug/gdb_client.h"
 #include "tests/exec/command.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 

@@ -1,11 +1,11 @@
 // What --trace, --watch, --stats, --callgrind and --coverage say of a program whose course is known, and that
 // other people's tools read it.
 
+#include "base/json.h"
 #include "tests/exec/command.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
 

@@ -1,6 +1,7 @@
 // How deep the stack went, what it left, what it ran into, and what was read before anything wrote it: of
 // programs whose calls are drawn, and of the project's firmware, against what its instruction trace shows.
 
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/avr/devices/device.h"
@@ -10,7 +11,6 @@
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <fstream>

@@ -1,5 +1,6 @@
 // Programs that go wrong: what the chip does, and that the report states it with place and symbol.
 
+#include "base/json.h"
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"
 #include "emu/image/code_places.h"
@@ -7,7 +8,6 @@
 #include "tests/dspic/chip30_bench.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using namespace puckloop::dspic;

@@ -1,6 +1,7 @@
 // docs/reference: pages that list what the code has in its tables. They are made by this test
 // (PUCKLOOP_WRITE_REFERENCE=1) and held to it.
 
+#include "base/json.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "emu/pic/signals.h"
 #include "emu/rab_board/signals.h"
@@ -11,7 +12,6 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <fstream>

@@ -1,9 +1,8 @@
 #pragma once
 // A folder of its own for each test, runs of puckloop in it, and what they leave on disk.
 
+#include "base/json.h"
 #include "tests/end_to_end/process.h"
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <map>

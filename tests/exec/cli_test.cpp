@@ -1,11 +1,11 @@
 // The built `puckloop exec`, as a user runs it: statuses, one-line errors, ends, JSON.
 
+#include "base/json.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 #include "tests/kit/dspic_pieces.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,10 +1,10 @@
 // Devices on the bus of a target that is its master, and what is recorded of a bus with nobody on it.
 
+#include "base/json.h"
 #include "tests/exec/command.h"
 #include "tests/kit/dspic_pieces.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using Catch::Contains;

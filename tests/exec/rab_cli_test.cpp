@@ -1,11 +1,11 @@
 // `puckloop exec --board rab` and scripted bus masters, as a user runs them.
 
+#include "base/json.h"
 #include "emu/dspic/devices/device.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using Catch::Contains;

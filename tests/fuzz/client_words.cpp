@@ -1,11 +1,10 @@
 // What clients of a run type: conditions, places, frames. What is taken is an object that can be sent.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/chips/value_words.h"
 #include "run/driven/words.h"
 #include "tests/fuzz/target.h"
-
-#include <nlohmann/json.hpp>
 
 #include <string_view>
 

@@ -2,6 +2,7 @@
 // at random. What Linux makes of them as in its Documentation/i2c/fault-codes.rst.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "cosim/i2c/i2c_fault.h"
@@ -9,7 +10,6 @@
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cerrno>
 

@@ -2,10 +2,10 @@
 
 #include "emu/i2c_devices/lsm330.h"
 
+#include "base/json.h"
 #include "emu/i2c_devices/signals.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <random>

@@ -1,12 +1,12 @@
 #pragma once
 // Faults of IRcom's medium as they come to the node: by its description.
 
+#include "base/json.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "tests/ircom/worlds.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <string>
 #include <vector>

@@ -2,6 +2,7 @@
 // did.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_table.h"
@@ -10,7 +11,6 @@
 #include "tests/ircom/faults.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

@@ -183,6 +183,7 @@ const std::vector<std::string> kFolders = {
     "selftest/grammar",
     "selftest/emulate",
     "tools/cli",
+    "tools/bench",
     "tools",
 };
 

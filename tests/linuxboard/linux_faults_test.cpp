@@ -1,13 +1,13 @@
 // Faults of a Linux program, as a small program sees them that prints what its calls give.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "tests/linuxboard/bench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstring>
 #include <set>

@@ -1,12 +1,12 @@
 // The cameras as unmodified programs see them: a program that uses V4L2's calls in every way, and a scenery
 // whose pictures say which frame they are.
 
+#include "base/json.h"
 #include "linuxboard/shim/devices/video_formats.h"
 #include "tests/linuxboard/bench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <linux/videodev2.h>
 

@@ -1,10 +1,10 @@
 // What the network manager makes of robots' lines, and whom a message reaches.
 
+#include "base/json.h"
 #include "base/random.h"
 #include "linuxboard/netmanager/traffic.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop::netmanager;
 

@@ -3,12 +3,12 @@
 #include "tests/network/wire_kit.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "cosim/faults/node_fault.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using namespace puckloop::tests;

@@ -3,10 +3,10 @@
 #include "tests/network/wire_kit.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using namespace puckloop::tests;

@@ -1,10 +1,9 @@
 #pragma once
 // Stations that flood an access point, and what of it gets through.
 
+#include "base/json.h"
 #include "emu/wifi/wifi_node.h"
 #include "tests/network/wire_kit.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <numbers>

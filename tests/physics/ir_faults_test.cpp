@@ -2,11 +2,11 @@
 // each hits what it is for and nothing else, and reports it.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "physics/ir/ir_node.h"
 #include "tests/physics/ir_worlds.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

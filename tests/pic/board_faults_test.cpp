@@ -4,13 +4,13 @@
 #include "tests/kit/board_faults.h"
 
 #include "base/archive.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
 #include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -5,6 +5,7 @@
 
 #include "base/archive.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/image/intel_hex.h"
 #include "emu/pic/pic_node.h"
@@ -13,7 +14,6 @@
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <map>
 

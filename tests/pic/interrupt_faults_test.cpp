@@ -2,6 +2,7 @@
 // timer toggles an LED each millisecond, UART2 sends back each byte that it interrupts for.
 
 #include "base/archive.h"
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
@@ -9,7 +10,6 @@
 #include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -2,12 +2,12 @@
 
 #include "emu/pic/pic_node.h"
 
+#include "base/json.h"
 #include "base/random.h"
 #include "tests/kit/node_under_test.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>

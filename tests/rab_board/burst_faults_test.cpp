@@ -1,12 +1,12 @@
 // Faults of the infra-red parts: bursts that an emitter or a demodulator misses, and a foreign carrier.
 
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/rab_board/rab_node.h"
 #include "tests/kit/board_faults.h"
 #include "tests/kit/node_under_test.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <map>
 #include <set>

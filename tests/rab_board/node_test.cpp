@@ -1,13 +1,13 @@
 // The board as a node: what leaves does not depend on how grants are cut, EOTs hold, the log states
 // what matters. Runs a small program of its own.
 
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/rab_board/rab_node.h"
 #include "tests/kit/node_under_test.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,10 +1,10 @@
 #pragma once
 // A radio medium with hand-made modules: what each gets, frame by frame.
 
+#include "base/json.h"
 #include "emu/radio/ether_node.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string>

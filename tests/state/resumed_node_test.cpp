@@ -1,10 +1,10 @@
 // A board that starts from a saved state: what it sends is what it would have sent, whatever comes in.
 
+#include "base/json.h"
 #include "cosim/resume/resumed_node.h"
 #include "tests/state/board_runs.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 // The board as a node: what it sends is the same however grants are cut, saved or gone back, and never
 // earlier than it said. The firmware is the project's own, or a small program.
 
+#include "base/json.h"
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/tam_avr/tam_node.h"
@@ -11,7 +12,6 @@
 #include "tests/tam_board/rig.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cstdlib>

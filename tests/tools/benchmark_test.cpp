@@ -1,6 +1,7 @@
 // What `puckloop bench` computes and starts, as far as it does not depend on how fast this machine is.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "benchmark/board_replay.h"
 #include "benchmark/cases.h"
 #include "benchmark/lab_scenario.h"
@@ -13,7 +14,6 @@
 #include "tests/tools/shell.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // Where a running world takes commands: whatever a client sends, and what a killed run leaves.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/control/control_place.h"
 #include "run/control/control_socket.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <sys/socket.h>
 #include <sys/stat.h>

@@ -1,11 +1,11 @@
 // From a scenario and the command line to nodes and links.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/setup.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

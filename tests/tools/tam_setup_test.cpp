@@ -1,13 +1,13 @@
 // TAMs of a scenario become nodes and links.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/factory/node_factory.h"
 #include "run/factory/preflight.h"
 #include "run/setup.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <fstream>

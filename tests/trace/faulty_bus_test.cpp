@@ -3,9 +3,9 @@
 
 #include "foreign_tools.h"
 
+#include "base/json.h"
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <random>
 #include <sstream>

@@ -2,9 +2,9 @@
 
 #include "trace_kit.h"
 
+#include "base/json.h"
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <fstream>
 #include <set>

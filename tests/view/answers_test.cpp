@@ -1,12 +1,11 @@
 // What has an address, and that nothing else does; who may ask.
 
+#include "base/json.h"
 #include "tests/view/results.h"
 #include "view/answers.h"
 #include "view/server/access.h"
 
 #include <catch2/catch.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,13 +1,13 @@
 // Events that are kept beside a recording: the same to the page as when they were read, and never another
 // run's.
 
+#include "base/json.h"
 #include "tests/view/results.h"
 #include "view/events/event_cache.h"
 #include "view/events/read_events.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <fstream>

@@ -1,14 +1,13 @@
 // What a page knows at once of a results folder, what is refused, and what is noted.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "tests/kit/files.h"
 #include "tests/view/results.h"
 #include "view/events/read_events.h"
 #include "view/recording/recording.h"
 
 #include <catch2/catch.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <cstring>
 #include <filesystem>

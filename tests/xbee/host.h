@@ -2,13 +2,13 @@
 // A radio module with a host at its serial line: what the host sends goes in as bytes at 9600 baud, what the
 // module answers comes out as frames with their times. The air is the test's own.
 
+#include "base/json.h"
 #include "emu/xbee/module_node.h"
 #include "protocols/uart_sampling.h"
 #include "protocols/xbee_frame.h"
 #include "protocols/xbee_message.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <string>

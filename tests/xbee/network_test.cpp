@@ -2,13 +2,13 @@
 
 #include "base/error.h"
 #include "base/fields/json.h"
+#include "base/json.h"
 #include "cosim/conductor.h"
 #include "emu/radio/ether_node.h"
 #include "emu/xbee/module_node.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 using namespace puckloop;
 using nlohmann::json;

@@ -1,6 +1,7 @@
 // `puckloop act RUN COMMAND`: does something to the world of a run that is on.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "run/control/control_place.h"
 #include "run/control/control_socket.h"
 #include "scenarios/reader/events/action_forms.h"
@@ -9,7 +10,6 @@
 #include "tools/commands.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <memory>

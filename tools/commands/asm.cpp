@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <iterator>
 #include <memory>
 
 namespace puckloop::tools {
@@ -33,8 +32,7 @@ std::string listing(const dspic::Program& program) {
         for (int i = 0; i < line.words && i < 2; ++i)
             words +=
                 fmt::format(" {:06x}", program.words.at(line.address + 2 * static_cast<std::uint32_t>(i)));
-        fmt::format_to(std::back_inserter(text), "{:06x}:{:<15} {:>5}  {}\n", line.address, words, line.line,
-                       line.text);
+        text += fmt::format("{:06x}:{:<15} {:>5}  {}\n", line.address, words, line.line, line.text);
     }
     return text;
 }
@@ -45,8 +43,7 @@ std::string listing(const avr::Program& program) {
         std::string bytes;
         for (int i = 0; i < line.bytes && i < 4; ++i)
             bytes += fmt::format(" {:02x}", program.bytes.at(line.address + static_cast<std::uint32_t>(i)));
-        fmt::format_to(std::back_inserter(text), "{:05x}:{:<13} {:>5}  {}\n", line.address, bytes, line.line,
-                       line.text);
+        text += fmt::format("{:05x}:{:<13} {:>5}  {}\n", line.address, bytes, line.line, line.text);
     }
     return text;
 }

@@ -13,7 +13,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <memory>
 
 namespace puckloop::tools {
@@ -63,7 +62,7 @@ std::string list_words(const DisasmArguments& arguments) {
         const int length = dspic::disassemble(words[i], next, at, text);
         std::string comment = fmt::format("; {:06x}: {:06x}", at, words[i]);
         if (length == 2) comment += fmt::format(" {:06x}", next);
-        fmt::format_to(std::back_inserter(output), "{:<40}{}\n", text.view(), comment);
+        output += fmt::format("{:<40}{}\n", text.view(), comment);
         i += static_cast<std::size_t>(length);
         at += 2 * static_cast<std::uint32_t>(length);
     }

@@ -2,12 +2,12 @@
 // bytes.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "protocols/epuck_serial.h"
 #include "tools/cli/command.h"
 #include "tools/commands/frames.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <iostream>

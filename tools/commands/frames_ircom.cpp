@@ -1,12 +1,12 @@
 // puckloop frames ircom: IRcom words as the times of a light's edges, in microseconds.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "protocols/ircom.h"
 #include "tools/cli/command.h"
 #include "tools/commands/frames.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <cmath>

@@ -1,13 +1,13 @@
 // puckloop frames rab: the range-and-bearing board's infra-red frame as chips, 1 = carrier on.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "protocols/rab_errors.h"
 #include "protocols/rab_frame.h"
 #include "tools/cli/command.h"
 #include "tools/commands/frames.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <bit>
 #include <iostream>

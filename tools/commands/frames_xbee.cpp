@@ -1,13 +1,13 @@
 // puckloop frames xbee: API frames of XBee modules, as hexadecimal bytes of the serial line.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "protocols/xbee_frame.h"
 #include "protocols/xbee_message.h"
 #include "tools/cli/command.h"
 #include "tools/commands/frames.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iostream>

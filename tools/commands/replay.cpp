@@ -3,6 +3,7 @@
 #include "replay/replay.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "replay/dump.h"
 #include "run/factory/node_factory.h"
 #include "run/report/results_folder.h"
@@ -15,7 +16,6 @@
 #include "traces/recorded_trace.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>

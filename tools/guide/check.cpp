@@ -1,6 +1,7 @@
 // `puckloop check FILE`: everything but running.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/toml_file.h"
 #include "campaigns/engine/campaign_file.h"
 #include "run/factory/preflight.h"
@@ -12,7 +13,6 @@
 #include "tools/guide/scenario_name.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>

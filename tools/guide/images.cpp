@@ -1,6 +1,7 @@
 // `puckloop images`: third-party images, where they come from, and whether PUCKLOOP_IMAGES has them.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/sha256.h"
 #include "base/suggest.h"
 #include "tools/cli/command.h"
@@ -8,7 +9,6 @@
 #include "tools/guide/image_catalogue.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <memory>

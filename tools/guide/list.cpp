@@ -1,6 +1,7 @@
 // `puckloop list`: scenarios, experiments, campaigns and images, each with its first line.
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/sha256.h"
 #include "base/shipped_files.h"
 #include "tools/cli/check.h"
@@ -10,7 +11,6 @@
 #include "tools/guide/image_catalogue.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -3,11 +3,11 @@
 
 #include "base/version/version.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "tools/cli/command.h"
 #include "tools/guide/guide.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <string>

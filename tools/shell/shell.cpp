@@ -1,11 +1,11 @@
 #include "tools/shell/shell.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggest.h"
 #include "bench/debugger/line_editor.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

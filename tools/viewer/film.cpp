@@ -1,6 +1,7 @@
 #include "tools/viewer/film.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/new_file.h"
 #include "base/partial_file.h"
 #include "base/text_file.h"
@@ -9,7 +10,6 @@
 #include "view/export_page.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -1,9 +1,9 @@
 // The losses of a run as text and as JSON.
 
+#include "base/json.h"
 #include "traces/rab_losses/results.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace puckloop::tools {
 

@@ -1,10 +1,10 @@
 #include "view/events/event_cache.h"
 
+#include "base/json.h"
 #include "base/version/version.h"
 #include "view/events/event_table.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -2,13 +2,13 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "base/text_file.h"
 #include "traces/decode.h"
 #include "traces/rab_losses/results.h"
 #include "view/recording/bytes.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

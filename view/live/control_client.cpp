@@ -1,10 +1,10 @@
 #include "view/live/control_client.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/text_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <sys/socket.h>
 #include <sys/un.h>

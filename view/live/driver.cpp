@@ -1,9 +1,9 @@
 #include "view/live/driver.h"
 
 #include "base/error.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>

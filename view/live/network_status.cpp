@@ -1,6 +1,6 @@
 #include "view/live/network_status.h"
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <charconv>
 #include <fstream>

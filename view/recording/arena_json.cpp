@@ -1,10 +1,9 @@
 #include "view/recording/arena_json.h"
 
+#include "base/json.h"
 #include "physics/description/booth.h"
 #include "physics/description/plan.h"
 #include "physics/description/robot_parameters.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 #include "view/recording/camera_pictures.h"
 
 #include "base/csv.h"
+#include "base/json.h"
 #include "base/text_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

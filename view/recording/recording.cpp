@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "base/text_file.h"
 #include "physics/render/arena_file.h"
 #include "physics/render/result_rows.h"
@@ -10,7 +11,6 @@
 #include "view/recording/bytes.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

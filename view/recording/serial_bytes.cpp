@@ -1,9 +1,8 @@
 #include "view/recording/serial_bytes.h"
 
 #include "base/csv.h"
+#include "base/json.h"
 #include "cosim/faults/spec/fault_kind.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>

@@ -1,12 +1,12 @@
 #include "linuxboard/shim/devices/video_device.h"
 
+#include "base/json.h"
 #include "linuxboard/shim/devices/camera_spec.h"
 #include "linuxboard/shim/devices/ioctl_data.h"
 #include "linuxboard/shim/wire/board_clock.h"
 #include "linuxboard/shim/wire/wire.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <linux/videodev2.h>
 #include <poll.h>

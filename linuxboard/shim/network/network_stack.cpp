@@ -3,8 +3,7 @@
 #include "linuxboard/shim/network/network_stack.h"
 
 #include "base/error.h"
-
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <poll.h>
 #include <sys/socket.h>

@@ -1,9 +1,9 @@
 // How a program comes to its end: by itself, with the run, or because it would not.
 
+#include "base/json.h"
 #include "linuxboard/shim/node/linux_node.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <csignal>

@@ -1,9 +1,9 @@
 // gap.json holds what docs/gap.md lists.
 
+#include "base/json.h"
 #include "tests/gap/report/made_verdict.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <fstream>
 #include <iterator>

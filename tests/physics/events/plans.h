@@ -1,10 +1,9 @@
 #pragma once
 // Plans, and nodes that carry them out, for the tests of physics/events.
 
+#include "base/json.h"
 #include "physics/node/world_node.h"
 #include "tests/physics/worlds.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Short hands for schemas of TOML tables.
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 #include <initializer_list>
 #include <span>

@@ -2,7 +2,7 @@
 // JSON Schemas (2020-12) of what users write and programs read. The first line `#:schema FILE` of a TOML file
 // makes editors complete and check it (Taplo, Even Better TOML).
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 namespace puckloop::tools {
 

@@ -1,4 +1,4 @@
-#include "tools/commands/assignment.h"
+#include "tools/bench/assignment.h"
 
 #include "base/csv.h"
 #include "base/error.h"

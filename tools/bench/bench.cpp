@@ -1,16 +1,16 @@
 // `puckloop bench`: performance figures, each measured beside a reference that the same machine runs in turn.
 
+#include "tools/bench/bench.h"
 #include "base/error.h"
 #include "benchmark/cases.h"
 #include "emu/chip/translation_switch.h"
+#include "tools/bench/bluetooth.h"
+#include "tools/bench/density.h"
+#include "tools/bench/network.h"
+#include "tools/bench/rab.h"
+#include "tools/bench/sound.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
-#include "tools/commands.h"
-#include "tools/commands/bench_bluetooth.h"
-#include "tools/commands/bench_density.h"
-#include "tools/commands/bench_network.h"
-#include "tools/commands/bench_rab.h"
-#include "tools/commands/bench_sound.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // `puckloop bench bluetooth`: how long exchanges between two Bluetooth modules take and how often they fail,
 // beside what was published.
 
-#include "tools/commands/bench_bluetooth.h"
+#include "tools/bench/bluetooth.h"
 #include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/text_file.h"

@@ -1,6 +1,6 @@
 // `puckloop bench network`: pause times of teams that talk by WiFi, beside what was published.
 
-#include "tools/commands/bench_network.h"
+#include "tools/bench/network.h"
 #include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/shipped_files.h"

@@ -1,6 +1,6 @@
 // `puckloop bench rab`: range and bearing as emulated boards read them, beside the published table.
 
-#include "tools/commands/bench_rab.h"
+#include "tools/bench/rab.h"
 #include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/text_file.h"
@@ -8,9 +8,9 @@
 #include "physics/ir/published_strengths.h"
 #include "reproductions/rab/measure.h"
 #include "reproductions/rab/picture.h"
+#include "tools/bench/assignment.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
-#include "tools/commands/assignment.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

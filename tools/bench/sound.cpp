@@ -1,6 +1,6 @@
 // `puckloop bench sound`: published experiments with sound, repeated on emulated boards.
 
-#include "tools/commands/bench_sound.h"
+#include "tools/bench/sound.h"
 #include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/text_file.h"

@@ -1,13 +1,13 @@
 // `puckloop bench density`: range and bearing among many robots, beside the published calibrations.
 
-#include "tools/commands/bench_density.h"
+#include "tools/bench/density.h"
 #include "base/claimed_folder.h"
 #include "base/error.h"
 #include "base/shipped_files.h"
 #include "base/text_file.h"
 #include "reproductions/density/density.h"
+#include "tools/bench/assignment.h"
 #include "tools/cli/check.h"
-#include "tools/commands/assignment.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
