@@ -84,10 +84,12 @@ function(puckloop_unity name)
 endfunction()
 
 # What reads input, writes reports or is a command, but carries out no node's time: optimising it less costs nobody, and saves
-# a quarter of its compilation.
+# a quarter of its compilation. Twice as many sources at a time save as much again: they share what they include and expand.
 function(puckloop_cold)
+  math(EXPR sources "2 * ${PUCKLOOP_UNITY_SOURCES}")
   foreach(name ${ARGN})
     target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${sources})
   endforeach()
 endfunction()
 
