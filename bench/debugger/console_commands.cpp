@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kMostFrames = 64;
 constexpr std::uint32_t kListed = 10;  // lines
 constexpr int kDisassembled = 10;      // instructions from an address
+constexpr int kMostDisassembled = 1000;
 constexpr std::uint32_t kMostMemory = 4096;
 
 const std::string& needed_word(const std::vector<std::string>& words, const char* what) {
@@ -170,7 +171,8 @@ void Console::delete_(const Words& words) {
     }
 }
 
-void Console::info(const Words&) {
+void Console::info(const Words& words) {
+    if (words.size() > 1 && std::string_view("registers").starts_with(words[1])) return registers(words);
     if (session_.points().empty()) std::printf("no break- or watchpoints\n");
     for (const auto& [number, point] : session_.points())
         std::printf("%d  %s %s%s, %zu hit%s\n", number, point.kind == Point::Kind::Watch ? "watch" : "break",
@@ -282,15 +284,28 @@ void Console::list(const Words& words) {
 void Console::disassemble(const Words& words) {
     const debug::DebugChip& chip = session_.chip();
     const Program& program = session_.program();
-    const bool address = words.size() > 1 && words[1].starts_with("0x");
+    // x/N, x/Ni: so many instructions from the place on, as gdb has it.
+    std::size_t first = 1;
+    int count = kDisassembled;
+    if (words.size() > 1 && words[1].starts_with("/")) {
+        std::string_view number = std::string_view(words[1]).substr(1);
+        if (number.ends_with("i")) number.remove_suffix(1);
+        const char* const last = number.data() + number.size();
+        if (const auto [end, error] = std::from_chars(number.data(), last, count);
+            error != std::errc{} || end != last || count < 1 || count > kMostDisassembled)
+            throw InputError("", "disassemble", fmt::format("'{}' is no count", words[1]),
+                             fmt::format("/1 to /{}; print or memory show data", kMostDisassembled));
+        first = 2;
+    }
+    const bool address = first == 2 || (words.size() > 1 && words[1].starts_with("0x"));
     const std::uint32_t place =
-        words.size() > 1 ? program.addresses(words[1], current_file()).front() : chip.pc();
+        words.size() > first ? program.addresses(words[first], current_file()).front() : chip.pc();
     const std::uint32_t function = program.function_of(place);
     const bool whole = !address && !program.function_name(place).empty();
     std::uint32_t pc = whole ? function : place;
     SourceLine shown_line;
-    for (int i = 0;
-         chip.is_code(pc) && (whole ? program.function_of(pc) == function && i < 1000 : i < kDisassembled);
+    for (int i = 0; chip.is_code(pc) &&
+                    (whole ? program.function_of(pc) == function && i < kMostDisassembled : i < count);
          ++i) {
         const debug::Instruction instruction = chip.instruction(pc);
         const SourceLine line = program.line_of(pc);

@@ -106,6 +106,15 @@ class MainBoard(Debugged):
         self.assertIn("in leds_start", said[6])
         self.assertIn("leds_set(0, 0);", said[7])
 
+    def test_commands_that_gdb_has(self):
+        said = self.at("x/3 leds_set", "x/2i", "info registers", "regs", "x/0", "x/3q leds_set", status=1)
+        for place, instructions in ((1, 3), (2, 2)):
+            self.assertEqual(len(re.findall(r"^(?:=>|  ) 0x\w{6} ", said[place], re.M)), instructions, said[place])
+        self.assertIn("w15", said[3])
+        self.assertEqual(said[3], said[4])
+        self.assertIn("'/0' is no count", said[5])
+        self.assertIn("'/3q' is no count", said[6])
+
     def test_bad_lines_are_one_line_each(self):
         said = self.at("break leds_sett", "break lead.c:7", "break leds.c:700", "break 0x3", "break 0xfffffe", "print LATQ",
                        "print LATA.LATA99", "prnt LATA", "delete 7", "step 0", "list nobody.c:1", "set LATA", "set LATA = 70000",
