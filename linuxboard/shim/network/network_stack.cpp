@@ -189,6 +189,7 @@ Socket& NetworkStack::add(SocketKind kind) {
     socket->id = next_id_++;
     socket->stream = stream;
     socket->echo = kind == SocketKind::Echo;
+    socket->netlink = kind == SocketKind::Netlink;
     if (stream) {
         socket->options.send_buffer = 131'072;
         socket->options.receive_buffer = 131'072;
@@ -238,6 +239,10 @@ int NetworkStack::send(int id, std::optional<Endpoint> to, std::string_view data
     taken = 0;
     if (socket.stream) return send_stream(socket, data, taken, now, more);
     if (const int error = std::exchange(socket.error, 0)) return error;
+    if (socket.netlink) {
+        taken = data.size();
+        return send_netlink(socket, data, now);
+    }
     if (socket.write_shut) return EPIPE;
     if (!to && !socket.connected) return EDESTADDRREQ;
     const Endpoint receiver = to ? *to : socket.peer;
@@ -283,6 +288,7 @@ int NetworkStack::receive(int id, std::size_t most, bool peek, Received& receive
 int NetworkStack::shutdown(int id, int how, Time now) {
     Socket& socket = at(id);
     if (how != SHUT_RD && how != SHUT_WR && how != SHUT_RDWR) return EINVAL;
+    if (socket.netlink) return EOPNOTSUPP;
     if (socket.listening) {
         if (how != SHUT_WR) {
             close_stream(socket, now);

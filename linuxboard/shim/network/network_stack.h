@@ -159,6 +159,12 @@ class NetworkStack {
     int send_echo(Socket& socket, Endpoint to, std::string_view data, cosim::Time now);
     void take_in(const protocols::IcmpMessage& message, const IpPacket& packet, cosim::Time now);
 
+    // stack_netlink.cpp
+    int send_netlink(Socket& socket, std::string_view data, cosim::Time now);
+    static void bind_netlink(Socket& socket, std::uint32_t number);
+    void answer_netlink(Socket& socket, std::string_view request, cosim::Time now);
+    static void put_answer(Socket& socket, std::string message, cosim::Time now);
+
     // stack_streams.cpp
     int send_stream(Socket& socket, std::string_view data, std::size_t& taken, cosim::Time now, bool more);
     void deliver(const protocols::TcpSegment& segment, const IpPacket& packet, cosim::Time now);
