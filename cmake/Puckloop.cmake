@@ -72,7 +72,9 @@ endfunction()
 # a quarter of its compilation.
 function(puckloop_cold)
   foreach(name ${ARGN})
-    target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
+    if(NOT name IN_LIST PUCKLOOP_SANITIZED)  # those are as what they precompile is
+      target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
+    endif()
   endforeach()
 endfunction()
 

@@ -115,3 +115,20 @@ TEST_CASE("a chat by select(), streams of the C library and half-close", "[netwo
                       "6 s");
     CHECK(count(log_of(bench, "o0", "ann"), "closing time\nend\n") == 1);
 }
+
+TEST_CASE("sockets with a name between programs of one board", "[network][beside]") {
+    const Workbench bench;
+    const auto file = bench.file("local.toml", hosts({{"alpha", python("local_talk.py")}}, "5 s"));
+    const Ended ended = bench.run("o", {file, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    Process host(python_words("local_talk.py"), bench.folder());
+    const Ended real = host.wait();
+    INFO(real.err);
+    CHECK(real.status == 0);
+    CHECK(log_of(bench, "o", "alpha") == real.out);
+    // They are the host's: it is said that the run need not be the same again.
+    const auto warnings = bench.report("o")["nodes"]["alpha.linux"]["warnings"].dump();
+    INFO(warnings);
+    CHECK(warnings.find("differ") != std::string::npos);
+}

@@ -92,6 +92,7 @@ void NetworkStack::emit(IpPacket packet, Time now, bool loop) {
 }
 
 void NetworkStack::receive_packet(std::span<const std::uint8_t> octets, Time now) {
+    next_event_.reset();
     const auto packet = protocols::decode_ip(octets);
     if (!packet) {
         ++counts_.damaged;
@@ -145,6 +146,7 @@ void NetworkStack::take_in(const IpPacket& packet, Time now) {
 }
 
 void NetworkStack::advance(Time now) {
+    next_event_.reset();
     while (!looped_.empty() && looped_.front().time <= now) {
         const Looped one = std::move(looped_.front());
         looped_.pop_front();
@@ -175,15 +177,18 @@ void NetworkStack::advance(Time now) {
 }
 
 Time NetworkStack::next_event() const {
+    if (next_event_) return *next_event_;
     Time next = looped_.empty() ? kNever : looped_.front().time;
     for (const auto& [id, socket] : sockets_) {
         next = std::min(next, socket->unreachable_at);
         if (socket->tcp) next = std::min(next, socket->tcp->next_event());
     }
+    next_event_ = next;
     return next;
 }
 
 Socket& NetworkStack::add(SocketKind kind) {
+    next_event_.reset();
     const bool stream = kind == SocketKind::Stream;
     auto socket = std::make_unique<Socket>();
     socket->id = next_id_++;

@@ -124,7 +124,11 @@ class NetworkStack {
   private:
     using IpPacket = protocols::IpPacket;
 
-    Socket& at(int id) { return *sockets_.at(id); }
+    /// To be changed.
+    Socket& at(int id) {
+        next_event_.reset();
+        return *sockets_.at(id);
+    }
     const Socket& at(int id) const { return *sockets_.at(id); }
     Socket& add(SocketKind kind);
     void forget_closed();
@@ -205,7 +209,8 @@ class NetworkStack {
     bool used_ = false;
     NetworkCounts counts_;
     InterfaceCounts loopback_, wireless_;
-    TcpCounts ended_;  ///< of connections that are no more
+    mutable std::optional<cosim::Time> next_event_;  ///< nothing: something has happened since
+    TcpCounts ended_;                                ///< of connections that are no more
 };
 
 inline constexpr protocols::IpAddress kLocalHost = 0x7f000001;
