@@ -4,6 +4,7 @@
 #include "emu/wifi/wifi_node.h"
 #include "tests/network/wire_kit.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
