@@ -141,6 +141,7 @@ void Dcf::put_on_air(Transmission transmission) {
 }
 
 bool Dcf::submit(std::size_t number, Frame frame, Time now) {
+    outlook_.reset();
     Station& station = stations_[number];
     if (static_cast<std::int64_t>(station.queue.size()) >= queue_) {
         ++station.counts.queue_full;
@@ -160,6 +161,7 @@ bool Dcf::submit(std::size_t number, Frame frame, Time now) {
 }
 
 std::vector<Frame> Dcf::set_away(std::size_t number, bool away) {
+    outlook_.reset();
     Station& station = stations_[number];
     station.away = away;
     std::vector<Frame> lost;
@@ -320,18 +322,27 @@ void Dcf::failed(std::size_t number, Time now) {
     next_frame(station, now);
 }
 
-Time Dcf::next() const {
-    Time next = next_burst_;
-    for (const Transmission& one : medium_.on_air())
-        if (!one.over) next = std::min(next, one.end);
+const Dcf::Outlook& Dcf::outlook() const {
+    if (outlook_) return *outlook_;
+    Outlook all{next_burst_, kNever};
+    for (const Transmission& one : medium_.on_air()) {
+        if (one.over) continue;
+        all.next = std::min(all.next, one.end);
+        if (one.station != kInterference) all.end = std::min(all.end, one.end);
+    }
+    Time acts = kNever;
     for (const Station& one : stations_)
-        next = std::min({next, one.ack_due, one.give_up, one.plan});
-    return next;
+        acts = std::min({acts, one.ack_due, one.give_up, one.plan});
+    all.next = std::min(all.next, acts);
+    // Whatever else happens may be followed by a frame, which takes its time.
+    all.end = std::min(all.end, cosim::later(acts, phy_.shortest_packet()));
+    return outlook_.emplace(all);
 }
 
 /// At one time: ends first, then acknowledgements, then who waits for one, then who sends.
 void Dcf::step() {
     const Time now = next();
+    outlook_.reset();
     for (std::size_t i = 0; i < medium_.on_air().size(); ++i) {
         const Transmission& one = medium_.on_air()[i];
         if (!one.over && one.end == now) return ended(i);
@@ -343,17 +354,6 @@ void Dcf::step() {
         if (stations_[s].give_up == now) return failed(s, now);
     for (std::size_t s = 0; s < stations_.size(); ++s)
         if (stations_[s].plan == now) return send(s, now);
-}
-
-Time Dcf::earliest_end() const {
-    Time earliest = kNever;
-    for (const Transmission& one : medium_.on_air())
-        if (!one.over && one.station != kInterference) earliest = std::min(earliest, one.end);
-    // Whatever else happens may be followed by a frame, which takes its time.
-    for (const Station& one : stations_)
-        for (const Time time : {one.ack_due, one.give_up, one.plan})
-            earliest = std::min(earliest, cosim::later(time, phy_.shortest_packet()));
-    return earliest;
 }
 
 }  // namespace puckloop::wifi

@@ -74,11 +74,11 @@ class Dcf {
     /// A frame that it sends already goes to its end.
     std::vector<Frame> set_away(std::size_t station, bool away);
     /// When something happens next; kNever.
-    cosim::Time next() const;
+    cosim::Time next() const { return outlook().next; }
     /// Does it.
     void step();
     /// No frame is read before, if nothing is submitted.
-    cosim::Time earliest_end() const;
+    cosim::Time earliest_end() const { return outlook().end; }
 
   private:
     struct Station {
@@ -104,6 +104,12 @@ class Dcf {
         Station(RandomStream backoff_stream, RandomStream noise_stream)
             : backoff(backoff_stream), noise(noise_stream) {}
     };
+
+    /// What next() and earliest_end() say: asked for with every message, while little happens on the air.
+    struct Outlook {
+        cosim::Time next = cosim::kNever, end = cosim::kNever;
+    };
+    const Outlook& outlook() const;
 
     void draw(Station& station);
     void plan(Station& station, cosim::Time now);
@@ -132,6 +138,7 @@ class Dcf {
     RandomStream burst_random_;
     cosim::Time next_burst_ = cosim::kNever;
     Bursts bursts_;
+    mutable std::optional<Outlook> outlook_;  ///< nothing: something has happened since
 };
 
 }  // namespace puckloop::wifi

@@ -91,7 +91,10 @@ WifiNode::WifiNode(const WifiSpec& spec)
         any_wired_ = any_wired_ || wired;
         station_of_.push_back(wired ? kNobody : computer_of_.size());
         if (!wired) computer_of_.push_back(c);
-        if (spec.stations[c].pose >= 0) dcf_.medium().embody(station_of_[c]);
+        const int pose = spec.stations[c].pose;
+        if (pose >= 0) dcf_.medium().embody(station_of_[c]);
+        for (std::size_t axis = 0; pose >= 0 && !wired && axis < 2; ++axis)
+            coordinates_[pose + static_cast<int>(axis)] = {station_of_[c], axis};
     }
     if (spec.access_point) computer_of_.push_back(kNobody);
     dcf_.medium().set_obstacles({spec.obstacles, spec.first_shape, spec.settings.thing_loss});
@@ -162,13 +165,12 @@ void WifiNode::advance(Time until, std::span<const cosim::Message> inbox,
 
 void WifiNode::place(const cosim::Signal& signal) {
     if (dcf_.medium().obstacles().take(static_cast<int>(signal.id), signal.value)) return;
-    for (std::size_t c = 0; c < spec_.stations.size(); ++c) {
-        const int axis = static_cast<int>(signal.id) - spec_.stations[c].pose;
-        if (spec_.stations[c].pose < 0 || axis < 0 || axis > 1 || station_of_[c] == kNobody) continue;
-        Position at = dcf_.medium().position(station_of_[c]);
-        at[static_cast<std::size_t>(axis)] = signal.value;
-        dcf_.medium().move(station_of_[c], at);
-    }
+    const auto found = coordinates_.find(static_cast<int>(signal.id));
+    if (found == coordinates_.end()) return;
+    const auto [station, axis] = found->second;
+    Position at = dcf_.medium().position(station);
+    at[axis] = signal.value;
+    dcf_.medium().move(station, at);
 }
 
 void WifiNode::change_away(Time now) {

@@ -25,6 +25,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -157,7 +158,9 @@ class WifiNode : public cosim::Node, private DcfUser {
     std::vector<cosim::Port> ports_;
     std::vector<std::size_t> station_of_;   ///< of each computer; kNobody: it is wired
     std::vector<std::size_t> computer_of_;  ///< of each station; kNobody: the access point
-    std::vector<std::string> names_;        ///< of stations
+    /// By signal of the world: of which station, 0: x, 1: y.
+    std::unordered_map<int, std::pair<std::size_t, std::size_t>> coordinates_;
+    std::vector<std::string> names_;  ///< of stations
     Dcf dcf_;
     std::map<std::pair<cosim::Time, std::uint64_t>, Waiting> waiting_;
     std::vector<cosim::Time> free_;  ///< of each computer: `rate` holds up its packets until then

@@ -1,77 +1,18 @@
 // Runs with a network: programs that know of no emulator between robots and hosts, the same in every
 // placement; what a lossy network does to them; bad input.
 
-#include "tests/end_to_end/load.h"
 #include "tests/end_to_end/one_line.h"
 #include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/network/host_runs.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 using namespace puckloop::tests;
 namespace fs = std::filesystem;
-
-namespace {
-
-const std::string kPython = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
-const std::string kPrograms = PUCKLOOP_SOURCE "/tests/network/programs/";
-
-std::string list_of(const Words& words) {
-    return fmt::format("[\"{}\"]", fmt::join(words, "\", \""));
-}
-std::string python(const std::string& file, const Words& more = {}) {
-    Words words{kPython, "-B", "-S", "-E", kPrograms + file};
-    words.insert(words.end(), more.begin(), more.end());
-    return list_of(words);
-}
-
-/// A scenario of hosts alone: name and program of each.
-std::string hosts(const std::vector<std::pair<std::string, std::string>>& programs,
-                  const std::string& duration, const std::string& network = "") {
-    std::string text = fmt::format(
-        "[run]\nduration = \"{}\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n[network]\n{}\n", duration, network);
-    for (const auto& [name, program] : programs)
-        text += fmt::format("[[host]]\nname = \"{}\"\nprogram = {}\n", name, program);
-    return text;
-}
-
-std::string log_of(const Workbench& bench, const std::string& run, const std::string& node) {
-    std::ifstream in(bench.out(run) / (node + ".linux.log"));
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
-std::size_t count(const std::string& text, const std::string& what) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
-        ++found;
-    return found;
-}
-
-/// Runs the scenario in every placement, and once beside other work; all are the same.
-void check_everywhere(const Workbench& bench, const fs::path& file) {
-    const std::vector<Words> ways{
-        {"--in-process"}, {}, {"--in-process", "--threads", "2"}, {"--in-process", "--threads", "4"}};
-    for (std::size_t i = 0; i <= ways.size(); ++i) {
-        Words words{file.string()};
-        const Words& way = ways[i % ways.size()];
-        words.insert(words.end(), way.begin(), way.end());
-        const Load load(i == ways.size() ? 3 : 0);
-        const Ended ended = bench.run(fmt::format("o{}", i), words);
-        INFO(ended.err);
-        REQUIRE(ended.status == 0);
-        if (i > 0) check_same_run(bench, "o0", fmt::format("o{}", i));
-    }
-}
-
-}  // namespace
 
 TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[network]") {
     const Workbench bench;
@@ -80,7 +21,7 @@ TEST_CASE("calls of sockets answer on a board as the host's kernel answers", "[n
     INFO(ended.err);
     REQUIRE(ended.status == 0);
     const std::string log = log_of(bench, "o", "alpha");
-    Process host({kPython, "-B", "-S", "-E", kPrograms + "calls.py"}, bench.folder());
+    Process host(python_words("calls.py"), bench.folder());
     const Ended real = host.wait();
     INFO(real.err);
     const std::string common = "\ncommon\n";
@@ -104,7 +45,7 @@ TEST_CASE("what servers and tools ask of sockets is as the host's kernel answers
     const Ended ended = bench.run("o", {file, "--in-process"});
     INFO(ended.err);
     REQUIRE(ended.status == 0);
-    Process host({kPython, "-B", "-S", "-E", kPrograms + "more_calls.py"}, bench.folder());
+    Process host(python_words("more_calls.py"), bench.folder());
     const Ended real = host.wait();
     INFO(real.err);
     CHECK(log_of(bench, "o", "alpha") == real.out);
@@ -444,6 +385,60 @@ TEST_CASE("programs with a resolver of their own ask the board's, and a silent o
                          "--in-process"})
             .status == 0);
     CHECK(log_of(bench, "dig", "client") == "10.0.0.254\nserver.\n1\n");
+}
+
+TEST_CASE("the C library's own questions to a name server come to the board's", "[network][dns]") {
+    const Workbench bench;
+    const auto text = hosts({{"server", R"(["true"])"}, {"client", list_of({PUCKLOOP_QUESTIONS})}}, "30 s");
+    const std::string rest =
+        "search: 10.0.0.254\ndomain: 10.0.0.254\npointer: server\nnobody: Unknown host\n"
+        "no such record: No address associated with name\nno name: Unknown server error\n"
+        "servers 1 127.0.0.53\nstate: 10.0.0.254\nits error 1\nsend: 10.0.0.254\n"
+        "urgent Operation not supported, Invalid argument\n";
+    check_everywhere(bench, bench.file("ask.toml", text));
+    CHECK(log_of(bench, "o0", "client") == "query: 10.0.0.254\nafter 0 s\n" + rest);
+    CHECK(bench.report("o0")["nodes"]["client.linux"]["warnings"] ==
+          nlohmann::json::array({"urgent data (MSG_OOB) is not carried by the network",
+                                 "no computer of the network has the name 'nobody'"}));
+    // The second question is answered, or none.
+    const auto silent = [&](const std::string& time) {
+        const Ended ended = bench.run("silent", {(bench.folder() / "ask.toml").string(), "--in-process",
+                                                 "--fault", "dns_silence node=client.linux for=" + time});
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        return log_of(bench, "silent", "client");
+    };
+    CHECK(silent("3s") == "query: 10.0.0.254\nafter 5 s\n" + rest);
+    CHECK(silent("8s") == "query: Host name lookup failure\nafter 10 s\n" + rest);
+}
+
+TEST_CASE("ip shows the board's interfaces, addresses and ways, and may not change them",
+          "[network][netlink]") {
+    if (!fs::exists("/usr/sbin/ip") && !fs::exists("/sbin/ip")) {
+        WARN("there is no ip: skipped");
+        return;
+    }
+    const Workbench bench;
+    const auto file = bench.file(
+        "ip.toml",
+        hosts({{"server", R"(["true"])"},
+               {"tools",
+                "[\"sh\", \"-c\", \"PATH=$PATH:/usr/sbin:/sbin; ip -o addr show up | cut -d' ' -f 1-7; ip -o "
+                "link show wlan0 | grep -o 'mtu 1500\\\\|link/ether [^ ]*\\\\|state UP'; ip route; ip route "
+                "get "
+                "10.0.0.254; ip route get 9.9.9.9 2>&1; ip link set lo down 2>&1; ip neigh; echo end\"]"}},
+              "3 s"));
+    const Ended ended = bench.run("o", {file, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    CHECK(log_of(bench, "o", "tools") ==
+          "1: lo    inet 127.0.0.1/8\n2: wlan0    inet 10.0.0.253/24\n"
+          "mtu 1500\nstate UP\nlink/ether 02:00:0a:00:00:fd\n"
+          "10.0.0.0/24 dev wlan0 proto kernel scope link src 10.0.0.253 \n"
+          "10.0.0.254 dev wlan0 proto kernel scope link src 10.0.0.253 \n"
+          "RTNETLINK answers: Network is unreachable\nRTNETLINK answers: Operation not permitted\nend\n");
+    REQUIRE(bench.run("apart", {file}).status == 0);
+    check_same_run(bench, "o", "apart");
 }
 
 TEST_CASE("a server that is killed ends its connections, and one that is paused does not", "[network]") {

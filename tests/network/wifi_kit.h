@@ -5,6 +5,8 @@
 #include "emu/wifi/wifi_node.h"
 #include "tests/network/wire_kit.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 

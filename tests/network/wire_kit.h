@@ -3,6 +3,8 @@
 
 #include "emu/network/network_node.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 

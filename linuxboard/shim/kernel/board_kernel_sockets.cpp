@@ -56,7 +56,7 @@ bool BoardKernel::is_socket_call(Op op) {
 
 void BoardKernel::open_socket(const wire::Request& request) {
     if (!network_) return finish(request.thread, -1, EAFNOSUPPORT, request.now);
-    const int socket = network_->open(static_cast<SocketKind>(std::min(request.a, 2u)));
+    const int socket = network_->open(static_cast<SocketKind>(std::min(request.a, 3u)));
     finish_open(request.thread, new_socket_file(socket), request.now);
 }
 
@@ -210,7 +210,8 @@ bool BoardKernel::attempt_receive(std::uint32_t thread, Waiting& waiting, Time n
     NetworkStack::Received received;
     int error = network_->receive(socket, request.a - waiting.gathered.size(), peek, received, now);
     // Of datagrams the end (shutdown) is for those alone that wait for one.
-    const bool none = error == 0 && received.from == Endpoint{} && !network_->is_stream(socket);
+    const bool none =
+        error == 0 && received.from == Endpoint{} && received.size == 0 && !network_->is_stream(socket);
     if (none && request.nonblocking != 0) error = EAGAIN;
     waiting.gathered += received.data;
     const bool some = !waiting.gathered.empty();

@@ -4,6 +4,7 @@
 #include "base/fields/field.h"
 #include "protocols/ip_packet.h"
 
+#include <bit>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,7 @@ struct NetworkPlace {
 
     bool contains(protocols::IpAddress other) const { return (other & mask) == (address & mask); }
     protocols::IpAddress broadcast() const { return address | ~mask; }
+    int prefix() const { return std::popcount(mask); }
 };
 /// Throws InputError for what is no address.
 NetworkPlace place_of(const NetworkSpec& spec);

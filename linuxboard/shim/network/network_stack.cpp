@@ -91,6 +91,7 @@ void NetworkStack::emit(IpPacket packet, Time now, bool loop) {
 }
 
 void NetworkStack::receive_packet(std::span<const std::uint8_t> octets, Time now) {
+    next_event_.reset();
     const auto packet = protocols::decode_ip(octets);
     if (!packet) {
         ++counts_.damaged;
@@ -144,6 +145,7 @@ void NetworkStack::take_in(const IpPacket& packet, Time now) {
 }
 
 void NetworkStack::advance(Time now) {
+    next_event_.reset();
     while (!looped_.empty() && looped_.front().time <= now) {
         const Looped one = std::move(looped_.front());
         looped_.pop_front();
@@ -174,20 +176,24 @@ void NetworkStack::advance(Time now) {
 }
 
 Time NetworkStack::next_event() const {
+    if (next_event_) return *next_event_;
     Time next = looped_.empty() ? kNever : looped_.front().time;
     for (const auto& [id, socket] : sockets_) {
         next = std::min(next, socket->unreachable_at);
         if (socket->tcp) next = std::min(next, socket->tcp->next_event());
     }
+    next_event_ = next;
     return next;
 }
 
 Socket& NetworkStack::add(SocketKind kind) {
+    next_event_.reset();
     const bool stream = kind == SocketKind::Stream;
     auto socket = std::make_unique<Socket>();
     socket->id = next_id_++;
     socket->stream = stream;
     socket->echo = kind == SocketKind::Echo;
+    socket->netlink = kind == SocketKind::Netlink;
     if (stream) {
         socket->options.send_buffer = 131'072;
         socket->options.receive_buffer = 131'072;
@@ -237,6 +243,10 @@ int NetworkStack::send(int id, std::optional<Endpoint> to, std::string_view data
     taken = 0;
     if (socket.stream) return send_stream(socket, data, taken, now, more);
     if (const int error = std::exchange(socket.error, 0)) return error;
+    if (socket.netlink) {
+        taken = data.size();
+        return send_netlink(socket, data, now);
+    }
     if (socket.write_shut) return EPIPE;
     if (!to && !socket.connected) return EDESTADDRREQ;
     const Endpoint receiver = to ? *to : socket.peer;
@@ -282,6 +292,7 @@ int NetworkStack::receive(int id, std::size_t most, bool peek, Received& receive
 int NetworkStack::shutdown(int id, int how, Time now) {
     Socket& socket = at(id);
     if (how != SHUT_RD && how != SHUT_WR && how != SHUT_RDWR) return EINVAL;
+    if (socket.netlink) return EOPNOTSUPP;
     if (socket.listening) {
         if (how != SHUT_WR) {
             close_stream(socket, now);

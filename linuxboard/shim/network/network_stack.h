@@ -124,7 +124,11 @@ class NetworkStack {
   private:
     using IpPacket = protocols::IpPacket;
 
-    Socket& at(int id) { return *sockets_.at(id); }
+    /// To be changed.
+    Socket& at(int id) {
+        next_event_.reset();
+        return *sockets_.at(id);
+    }
     const Socket& at(int id) const { return *sockets_.at(id); }
     Socket& add(SocketKind kind);
     void forget_closed();
@@ -158,6 +162,12 @@ class NetworkStack {
     // stack_echoes.cpp
     int send_echo(Socket& socket, Endpoint to, std::string_view data, cosim::Time now);
     void take_in(const protocols::IcmpMessage& message, const IpPacket& packet, cosim::Time now);
+
+    // stack_netlink.cpp
+    int send_netlink(Socket& socket, std::string_view data, cosim::Time now);
+    static void bind_netlink(Socket& socket, std::uint32_t number);
+    void answer_netlink(Socket& socket, std::string_view request, cosim::Time now);
+    static void put_answer(Socket& socket, std::string message, cosim::Time now);
 
     // stack_streams.cpp
     int send_stream(Socket& socket, std::string_view data, std::size_t& taken, cosim::Time now, bool more);
@@ -199,7 +209,8 @@ class NetworkStack {
     bool used_ = false;
     NetworkCounts counts_;
     InterfaceCounts loopback_, wireless_;
-    TcpCounts ended_;  ///< of connections that are no more
+    mutable std::optional<cosim::Time> next_event_;  ///< nothing: something has happened since
+    TcpCounts ended_;                                ///< of connections that are no more
 };
 
 inline constexpr protocols::IpAddress kLocalHost = 0x7f000001;

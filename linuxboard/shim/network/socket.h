@@ -38,7 +38,7 @@ struct SocketOptions {
     std::string device{};  ///< SO_BINDTODEVICE
 };
 
-enum class SocketKind : std::uint8_t { Datagram, Stream, Echo };
+enum class SocketKind : std::uint8_t { Datagram, Stream, Echo, Netlink };
 
 struct Socket {
     /// What a datagram takes of the buffer beside its data, as of Linux (sk_buff).
@@ -53,8 +53,9 @@ struct Socket {
 
     int id = 0;
     bool stream = false;
-    bool echo = false;  ///< of ICMP echoes: SOCK_DGRAM with IPPROTO_ICMP; the port is the identifier
-    bool open = true;   ///< a program has it
+    bool echo = false;     ///< of ICMP echoes: SOCK_DGRAM with IPPROTO_ICMP; the port is the identifier
+    bool netlink = false;  ///< of NETLINK_ROUTE; the address is its number, the kernel's is 0
+    bool open = true;      ///< a program has it
     Endpoint local{}, peer{};
     bool bound = false, connected = false;
     bool read_shut = false, write_shut = false;

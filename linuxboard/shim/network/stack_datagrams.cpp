@@ -76,7 +76,9 @@ void NetworkStack::deliver(const protocols::UdpDatagram& datagram, const IpPacke
     int best_score = -1;
     for (const auto& [id, entry] : sockets_) {
         Socket& socket = *entry;
-        if (socket.stream || socket.echo || !socket.bound || socket.local.port != datagram.to_port) continue;
+        if (socket.stream || socket.echo || socket.netlink || !socket.bound ||
+            socket.local.port != datagram.to_port)
+            continue;
         if (socket.local.address != 0 && socket.local.address != packet.to) continue;
         if (socket.connected && socket.peer != from) continue;
         if (is_group(packet.to)) {

@@ -3,6 +3,7 @@
 #include "linuxboard/shim/network/network_stack.h"
 #include "linuxboard/shim/network/tcp_states.h"
 
+#include <linux/netlink.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -179,6 +180,8 @@ void NetworkStack::watch_peer(Socket& socket, Time now) {
 int NetworkStack::set_option(int id, int level, int name, std::string_view value, Time now) {
     Socket& socket = at(id);
     SocketOptions& options = socket.options;
+    if (level == SOL_NETLINK && socket.netlink) return 0;  // what they ask for beside answers never comes
+    if (socket.netlink && level != SOL_SOCKET) return ENOPROTOOPT;
     if (level == IPPROTO_TCP && !socket.stream) return ENOPROTOOPT;
     if (level == IPPROTO_IP && (name == IP_ADD_MEMBERSHIP || name == IP_DROP_MEMBERSHIP)) {
         ip_mreq wish{};
@@ -281,6 +284,7 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
         value = table(static_cast<NetworkTable>(name)).substr(0, wire::kMaximumData);
         return 0;
     }
+    if (socket.netlink && level != SOL_SOCKET) return ENOPROTOOPT;
     if (level == IPPROTO_TCP && !socket.stream) return ENOPROTOOPT;
     if (const bool* flag = flag_of(options, level, name)) return give(int{*flag ? 1 : 0});
     if (const Number stored = number_of(options, level, name); stored.value != nullptr)
@@ -312,11 +316,14 @@ int NetworkStack::get_option(int id, int level, int name, std::string& value) {
     case SO_ERROR:
         return give(take_error(socket));
     case SO_TYPE:
-        return give(int{socket.stream ? SOCK_STREAM : SOCK_DGRAM});
+        return give(int{socket.stream ? SOCK_STREAM : socket.netlink ? SOCK_RAW : SOCK_DGRAM});
     case SO_DOMAIN:
-        return give(int{AF_INET});
+        return give(int{socket.netlink ? AF_NETLINK : AF_INET});
     case SO_PROTOCOL:
-        return give(int{socket.stream ? IPPROTO_TCP : socket.echo ? IPPROTO_ICMP : IPPROTO_UDP});
+        return give(int{socket.netlink  ? NETLINK_ROUTE
+                        : socket.stream ? IPPROTO_TCP
+                        : socket.echo   ? IPPROTO_ICMP
+                                        : IPPROTO_UDP});
     case SO_ACCEPTCONN:
         return give(int{socket.listening ? 1 : 0});
     case SO_RCVBUF:

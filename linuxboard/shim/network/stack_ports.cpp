@@ -52,6 +52,10 @@ std::size_t NetworkStack::share_of(Endpoint here, Endpoint there, std::size_t co
 
 int NetworkStack::bind(int id, Endpoint to) {
     Socket& socket = at(id);
+    if (socket.netlink) {
+        bind_netlink(socket, to.address);
+        return 0;
+    }
     if (socket.bound || socket.connected) return EINVAL;
     const bool for_many = !socket.stream && is_for_many(to.address);
     if (to.address != 0 && !is_own(to.address) && !for_many) return EADDRNOTAVAIL;

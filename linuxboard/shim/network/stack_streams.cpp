@@ -44,6 +44,12 @@ void NetworkStack::set_patience(TcpConnection::Settings& settings, const SocketO
 
 int NetworkStack::connect(int id, Endpoint to, Time now) {
     Socket& socket = at(id);
+    if (socket.netlink) {
+        if (to.address != 0) return ECONNREFUSED;  // nobody but the kernel answers
+        if (!socket.bound) bind_netlink(socket, 0);
+        socket.connected = true;
+        return 0;
+    }
     if (to.address == 0) to.address = kLocalHost;
     if (!socket.stream) {
         if (is_broadcast(to.address) && !socket.options.broadcast) return EACCES;

@@ -57,7 +57,7 @@ std::string NetworkStack::table(NetworkTable which) const {
                                    streams ? 149 : 127);
     int row = 0;
     for (const auto& [id, socket] : sockets_) {
-        if (socket->stream != streams || socket->echo || !socket->bound) continue;
+        if (socket->stream != streams || socket->echo || socket->netlink || !socket->bound) continue;
         const bool open = socket->tcp || socket->listening || !streams;
         if (!open) continue;
         const int state = socket->listening               ? TCP_LISTEN

@@ -172,7 +172,8 @@ Time LinuxNode::next_action() const {
 Time LinuxNode::earliest_output(cosim::PortIndex port) const {
     const bool network = port == network_port_;
     if (port >= kCameraPort && !network) return kNever;
-    const Time action = std::max(next_action(), until_);
+    if (!action_) action_ = next_action();
+    const Time action = std::max(*action_, until_);
     if (network) {
         // The end of a process may have left some that are still to be collected.
         if (kernel_.network()->has_packets()) return until_;

@@ -126,6 +126,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void apply_faults(cosim::Time now);
     cosim::Time next_device_event() const;
     cosim::Time next_action() const;
+    mutable std::optional<cosim::Time> action_;  ///< next_action() since advance(); asked for by each port
     void collect(std::vector<cosim::Message>& outbox);
     void pace(cosim::Time time);
 

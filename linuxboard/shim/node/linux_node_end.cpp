@@ -143,6 +143,7 @@ void LinuxNode::note_waiting(Time now) {
 }
 
 void LinuxNode::wind_up(Time now, int signal) {
+    action_.reset();
     notice_first_killed(now);
     end_leaving(now);
     start_at_ = kNever;

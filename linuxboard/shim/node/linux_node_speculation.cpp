@@ -30,6 +30,7 @@ void LinuxNode::Speculation::mark() {
 }
 
 void LinuxNode::Speculation::rewind() {
+    node_.action_.reset();
     node_.kernel_.put_back(*devices_);
     node_.until_ = until_;
     node_.messages_in_ = messages_in_;

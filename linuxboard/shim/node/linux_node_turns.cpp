@@ -29,6 +29,7 @@ void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<
 }
 
 bool LinuxNode::begin(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
+    action_.reset();
     inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(inbox_next_));
     inbox_next_ = 0;
     inbox_.insert(inbox_.end(), inbox.begin(), inbox.end());
@@ -40,6 +41,7 @@ bool LinuxNode::begin(Time until, std::span<const Message> inbox, std::vector<Me
 }
 
 bool LinuxNode::resume(bool wait) {
+    action_.reset();
     while (true) {
         if (Client* const running = first(Client::State::Running)) {
             if (!listen(*running, wait)) return false;

@@ -56,7 +56,8 @@ enum class Op : std::uint32_t {
     Resolve,    ///< data: a computer's name, for a board whose names a fault may keep from it; fails with
                 ///< EAGAIN
     // Sockets; addresses are SocketAddress
-    Socket,       ///< a = 0: datagrams, 1: a stream, 2: ICMP echoes; result: handle
+    Socket,       ///< a = 0: datagrams, 1: a stream, 2: ICMP echoes, 3: NETLINK_ROUTE, whose
+                  ///< addresses are numbers of sockets; result: handle
     Bind,         ///< handle, data: address
     Connect,      ///< handle, data: address
     Listen,       ///< handle, a = backlog
@@ -127,8 +128,10 @@ enum class NetworkTable : std::uint32_t { Interfaces, Routes, Neighbours, Stream
 struct PassedFile {
     std::uint64_t inode = 0;
     std::int32_t flags = 0;
-    std::uint32_t stream = 0;
+    std::uint32_t kind = 0;  ///< 0: datagrams, 1: a stream, 2: netlink
 };
+
+inline constexpr std::uint32_t kNetlinkSocket = 3;  ///< of Op::Socket
 
 /// IPv4, both as numbers of the host.
 struct SocketAddress {

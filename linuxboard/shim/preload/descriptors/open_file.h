@@ -22,7 +22,9 @@ struct OpenFile {
     std::uint16_t slave = 0;
     bool ten_bit = false;
     bool pec = false;
-    bool stream = false;  ///< of a socket
+    // of a socket
+    bool stream = false;
+    bool netlink = false;  ///< its addresses are sockaddr_nl
 };
 inline constexpr const char* kSocketPath = "socket";
 

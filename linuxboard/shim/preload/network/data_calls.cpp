@@ -8,6 +8,7 @@
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
 #include "linuxboard/shim/preload/time/clocks.h"
 #include "linuxboard/shim/preload/waiting/outside.h"
+#include "linuxboard/shim/wire/interfaces.h"
 
 #include <fcntl.h>
 #include <limits.h>
@@ -33,6 +34,11 @@ namespace {
 int fail(int error) {
     errno = error;
     return -1;
+}
+
+int refuse_urgent(int error) {
+    note("urgent data (MSG_OOB) is not carried by the network");
+    return fail(error);
 }
 
 bool waits(const OpenFile& file, int flags) {
@@ -72,7 +78,7 @@ std::int64_t receive(OpenFile& file, std::size_t most, int flags, Arrived& arriv
     mark_call("recv");
     pthread_testcancel();
     charge(page().charges.device);
-    if ((flags & MSG_OOB) != 0) return fail(EINVAL);
+    if ((flags & MSG_OOB) != 0) return refuse_urgent(EINVAL);  // as where none has come
     if ((flags & MSG_ERRQUEUE) != 0) return fail(EAGAIN);
     constexpr std::size_t kMostOfStream = wire::kMaximumData - sizeof(wire::SocketReceived);
     constexpr std::size_t kMostOfDatagram = 65'535;
@@ -106,18 +112,6 @@ std::int64_t receive(OpenFile& file, std::size_t most, int flags, Arrived& arriv
     if (receive(file, most - kMostOfStream, flags, rest) < 0) return result;
     arrived.data.insert(arrived.data.end(), rest.data.begin(), rest.data.end());
     return static_cast<std::int64_t>(arrived.data.size());
-}
-
-bool put_sender(const wire::SocketReceived& head, sockaddr* theirs, socklen_t* length) {
-    if (theirs == nullptr || length == nullptr) return true;
-    socklen_t room = 0;
-    if (!get_from_program(room, length)) return false;
-    sockaddr_in from{};
-    from.sin_family = AF_INET;
-    from.sin_addr.s_addr = htonl(head.from.address);
-    from.sin_port = htons(head.from.port);
-    if (!copy_to_program(theirs, &from, std::min<std::size_t>(room, sizeof from))) return false;
-    return put_to_program(length, static_cast<socklen_t>(sizeof from));
 }
 
 /// What a call on a datagram of `size` octets answers that has room for less.
@@ -168,7 +162,7 @@ bool put_control(const wire::SocketReceived& head, msghdr& message) {
     if ((head.with & wire::kWithPacketInfo) != 0) {
         const bool loopback = head.to >> 24 == 127 || head.from.address == page().network_address;
         in_pktinfo info{};
-        info.ipi_ifindex = loopback ? kLoopbackIndex : kWirelessIndex;
+        info.ipi_ifindex = loopback ? wire::kLoopbackIndex : wire::kWirelessIndex;
         info.ipi_addr.s_addr = htonl(head.to);
         const bool own = head.to == page().network_address || head.to >> 24 == 127;
         info.ipi_spec_dst.s_addr = htonl(own ? head.to : page().network_address);
@@ -196,7 +190,7 @@ std::int64_t send_message(OpenFile& file, const msghdr& message, int flags) {
         if (size > 0 && !copy_from_program(data.data() + before, part.iov_base, size)) return -1;
     }
     if (message.msg_controllen != 0 && !check_control(message)) return -1;
-    if (message.msg_name == nullptr || file.stream)
+    if (message.msg_name == nullptr || file.stream || file.netlink)  // that has but one receiver: the kernel
         return send_bytes(file, data.data(), data.size(), flags, nullptr);
     sockaddr_in to{};
     if (message.msg_namelen < sizeof to) return fail(EINVAL);
@@ -227,7 +221,8 @@ std::int64_t receive_message(OpenFile& file, msghdr& message, int flags) {
         return -1;
     if (file.stream || message.msg_name == nullptr) {
         message.msg_namelen = 0;
-    } else if (!put_sender(arrived.head, static_cast<sockaddr*>(message.msg_name), &message.msg_namelen)) {
+    } else if (!put_address(file, arrived.head.from, static_cast<sockaddr*>(message.msg_name),
+                            &message.msg_namelen)) {
         return -1;
     }
     return length_of(file, arrived, flags);
@@ -242,7 +237,7 @@ std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int 
     mark_call("send");
     pthread_testcancel();
     charge(page().charges.device);
-    if ((flags & MSG_OOB) != 0) return fail(EOPNOTSUPP);
+    if ((flags & MSG_OOB) != 0) return refuse_urgent(EOPNOTSUPP);
     std::int64_t sent = 0;
     if (!file.stream) {
         constexpr std::size_t kMostOfDatagram = 65'507;
@@ -374,7 +369,7 @@ SHIM_EXPORT ssize_t recvfrom(int fd, void* buffer, size_t size, int flags, socka
         if (!copy_to_program(buffer, arrived.data.data(), arrived.data.size())) return -1;
         if (file->stream) {
             if (from != nullptr && length != nullptr && !put_to_program(length, socklen_t{0})) return -1;
-        } else if (!put_sender(arrived.head, from, length)) {
+        } else if (!put_address(*file, arrived.head.from, from, length)) {
             return -1;
         }
         return length_of(*file, arrived, flags);

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/wire/interfaces.h"
 
 #include <ifaddrs.h>
 #include <linux/sockios.h>
@@ -23,27 +24,14 @@ namespace puckloop::shim {
 
 namespace {
 
-struct Interface {
-    int index;
-    const char* name;
-    unsigned flags;
-    int mtu;
-};
-constexpr Interface kInterfaces[] = {
-    {kLoopbackIndex, "lo", IFF_UP | IFF_LOOPBACK | IFF_RUNNING, 65'536},
-    {kWirelessIndex, "wlan0", IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST, 1500},
-};
+using wire::Interface;
+using wire::kInterfaces;
 
-constexpr int kQueueLength = 1000;  // DEFAULT_TX_QUEUE_LEN
-
-bool is_loopback(const Interface& one) {
-    return one.index == kLoopbackIndex;
-}
 std::uint32_t address_of(const Interface& one) {
-    return is_loopback(one) ? INADDR_LOOPBACK : page().network_address;
+    return one.address(page().network_address);
 }
 std::uint32_t mask_of(const Interface& one) {
-    return is_loopback(one) ? 0xff000000u : ~std::uint32_t{0} << (32 - page().network_prefix);
+    return one.mask(static_cast<int>(page().network_prefix));
 }
 std::uint32_t broadcast_of(const Interface& one) {
     return address_of(one) | ~mask_of(one);
@@ -122,24 +110,17 @@ int ask_interface(unsigned long request, void* argument) {
         wish.ifr_metric = 0;
         break;
     case SIOCGIFTXQLEN:
-        wish.ifr_qlen = kQueueLength;
+        wish.ifr_qlen = wire::kQueueLength;
         break;
     case SIOCGIFMAP:
         wish.ifr_map = {};
         break;
     case SIOCGIFHWADDR: {
         wish.ifr_hwaddr = {};
-        wish.ifr_hwaddr.sa_family = is_loopback(*found) ? ARPHRD_LOOPBACK : ARPHRD_ETHER;
-        if (is_loopback(*found)) break;
-        // A locally administered one, from the address.
-        const std::uint32_t address = page().network_address;
-        const unsigned char octets[6] = {0x02,
-                                         0x00,
-                                         static_cast<unsigned char>(address >> 24),
-                                         static_cast<unsigned char>(address >> 16),
-                                         static_cast<unsigned char>(address >> 8),
-                                         static_cast<unsigned char>(address)};
-        std::memcpy(wish.ifr_hwaddr.sa_data, octets, sizeof octets);
+        wish.ifr_hwaddr.sa_family = found->is_loopback() ? ARPHRD_LOOPBACK : ARPHRD_ETHER;
+        if (found->is_loopback()) break;
+        const auto octets = wire::hardware_address(page().network_address);
+        std::memcpy(wish.ifr_hwaddr.sa_data, octets.data(), octets.size());
         break;
     }
     default:

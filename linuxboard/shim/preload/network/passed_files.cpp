@@ -47,7 +47,7 @@ void give_descriptors(const msghdr& message) {
             note("a device was passed to another process, which gets none");
             return;
         }
-        const wire::PassedFile passed{inode_of(fd), file->flags, file->stream ? 1u : 0u};
+        const wire::PassedFile passed{inode_of(fd), file->flags, file->netlink ? 2u : file->stream ? 1u : 0u};
         device_call(device_request(*file, wire::Op::Give), &passed, sizeof passed);
     });
 }
@@ -82,7 +82,8 @@ void take_descriptors(msghdr& message) {
         file->kind = OpenFile::Kind::Socket;
         file->path = kSocketPath;
         file->handle = handle;
-        file->stream = passed.stream != 0;
+        file->stream = passed.kind == 1;
+        file->netlink = passed.kind == 2;
         file->flags = passed.flags;
     });
 }

@@ -9,6 +9,7 @@
 #include "linuxboard/shim/preload/waiting/outside.h"
 
 #include <fcntl.h>
+#include <linux/netlink.h>
 #include <linux/sockios.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -47,6 +48,33 @@ std::int64_t named(std::int64_t result, const wire::SocketAddress& address) {
     return result;
 }
 
+bool put_address(const OpenFile& file, const wire::SocketAddress& address, sockaddr* theirs,
+                 socklen_t* length) {
+    if (theirs == nullptr || length == nullptr) return true;
+    socklen_t room = 0;
+    if (!get_from_program(room, length)) return false;
+    if (static_cast<int>(room) < 0) {
+        errno = EINVAL;
+        return false;
+    }
+    union {
+        sockaddr_in place;
+        sockaddr_nl number;
+    } given{};
+    std::size_t size = sizeof given.place;
+    if (file.netlink) {
+        given.number.nl_family = AF_NETLINK;
+        given.number.nl_pid = address.address;
+        size = sizeof given.number;
+    } else {
+        given.place.sin_family = AF_INET;
+        given.place.sin_addr.s_addr = htonl(address.address);
+        given.place.sin_port = htons(address.port);
+    }
+    if (!copy_to_program(theirs, &given, std::min<std::size_t>(room, size))) return false;
+    return put_to_program(length, static_cast<socklen_t>(size));
+}
+
 }  // namespace puckloop::shim
 
 namespace {
@@ -56,8 +84,20 @@ int fail(int error) {
     return -1;
 }
 
-/// The program's address, as IPv4; false and errno for what is none.
-bool get_address(wire::SocketAddress& address, const sockaddr* theirs, socklen_t length) {
+/// The program's address of a netlink socket.
+bool get_number(wire::SocketAddress& address, const sockaddr* theirs, socklen_t length) {
+    sockaddr_nl given{};
+    if (length < sizeof given) return fail(EINVAL) == 0;
+    if (!copy_from_program(&given, theirs, sizeof given)) return false;
+    if (given.nl_family != AF_NETLINK) return fail(EINVAL) == 0;
+    address = {given.nl_pid, 0, 0};
+    return true;
+}
+
+/// The program's address; false and errno for what is none.
+bool get_address(const OpenFile& file, wire::SocketAddress& address, const sockaddr* theirs,
+                 socklen_t length) {
+    if (file.netlink) return get_number(address, theirs, length);
     sockaddr_in given{};
     if (length < sizeof(sa_family_t)) return fail(EINVAL) == 0;
     if (!copy_from_program(&given, theirs, std::min<std::size_t>(length, sizeof given))) return false;
@@ -67,24 +107,10 @@ bool get_address(wire::SocketAddress& address, const sockaddr* theirs, socklen_t
     return true;
 }
 
-/// As much of it as there is room for, as the kernel does.
-bool put_address(const wire::SocketAddress& address, sockaddr* theirs, socklen_t* length) {
-    if (theirs == nullptr || length == nullptr) return true;
-    socklen_t room = 0;
-    if (!get_from_program(room, length)) return false;
-    if (static_cast<int>(room) < 0) return fail(EINVAL) == 0;
-    sockaddr_in given{};
-    given.sin_family = AF_INET;
-    given.sin_addr.s_addr = htonl(address.address);
-    given.sin_port = htons(address.port);
-    if (!copy_to_program(theirs, &given, std::min<std::size_t>(room, sizeof given))) return false;
-    return put_to_program(length, static_cast<socklen_t>(sizeof given));
-}
-
 /// A descriptor for what the node has opened as `handle`.
-int new_descriptor(int handle, bool stream, int type_flags) {
+OpenFile* new_file(int handle, bool stream, int type_flags, int& fd) {
     const int kind = (stream ? SOCK_STREAM : SOCK_DGRAM) | (type_flags & SOCK_CLOEXEC);
-    const int fd = REAL(socket)(AF_UNIX, kind, 0);
+    fd = REAL(socket)(AF_UNIX, kind, 0);
     OpenFile* file = fd >= 0 ? adopt_descriptor(fd) : nullptr;
     if (file == nullptr) {
         const int error = errno;
@@ -92,14 +118,20 @@ int new_descriptor(int handle, bool stream, int type_flags) {
         request.op = wire::Op::Close;
         request.handle = handle;
         device_call(request);
-        return fail(error);
+        errno = error;
+        return nullptr;
     }
     file->kind = OpenFile::Kind::Socket;
     file->path = kSocketPath;
     file->handle = handle;
     file->stream = stream;
     file->flags = O_RDWR | ((type_flags & SOCK_NONBLOCK) != 0 ? O_NONBLOCK : 0);
-    return fd;
+    return file;
+}
+
+int new_descriptor(int handle, bool stream, int type_flags) {
+    int fd = -1;
+    return new_file(handle, stream, type_flags, fd) != nullptr ? fd : -1;
 }
 
 /// What a kernel without this family, or a user without rights, answers.
@@ -110,6 +142,27 @@ int refuse_family(int domain, int type) {
     }
     note("sockets of the address family %d are not carried by the network", domain);
     return fail(EAFNOSUPPORT);
+}
+
+/// NETLINK_ROUTE; other protocols are modules that a kernel need not have.
+int open_netlink(int type, int protocol) {
+    mark_call("socket");
+    charge(page().charges.device);
+    const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (kind != SOCK_RAW && kind != SOCK_DGRAM) return fail(ESOCKTNOSUPPORT);
+    if (protocol != NETLINK_ROUTE) {
+        note("netlink sockets of the protocol %d are not carried by the network", protocol);
+        return fail(EPROTONOSUPPORT);
+    }
+    wire::Request request;
+    request.op = wire::Op::Socket;
+    request.a = wire::kNetlinkSocket;
+    const auto handle = static_cast<int>(device_call(request));
+    int fd = -1;
+    OpenFile* const file = handle < 0 ? nullptr : new_file(handle, false, type, fd);
+    if (file == nullptr) return -1;
+    file->netlink = true;
+    return fd;
 }
 
 int open_socket(int domain, int type, int protocol) {
@@ -137,7 +190,7 @@ int open_socket(int domain, int type, int protocol) {
 
 SHIM_EXPORT int socket(int domain, int type, int protocol) noexcept {
     if (!networked() || domain == AF_UNIX) return REAL(socket)(domain, type, protocol);
-    return open_socket(domain, type, protocol);
+    return domain == AF_NETLINK ? open_netlink(type, protocol) : open_socket(domain, type, protocol);
 }
 
 SHIM_EXPORT int bind(int fd, const sockaddr* address, socklen_t length) noexcept {
@@ -146,7 +199,7 @@ SHIM_EXPORT int bind(int fd, const sockaddr* address, socklen_t length) noexcept
     mark_call("bind");
     charge(page().charges.device);
     wire::SocketAddress to;
-    if (!get_address(to, address, length)) return -1;
+    if (!get_address(*file, to, address, length)) return -1;
     return static_cast<int>(named(device_call(device_request(*file, wire::Op::Bind), &to, sizeof to), to));
 }
 
@@ -172,7 +225,7 @@ SHIM_EXPORT int connect(int fd, const sockaddr* address, socklen_t length) {
     wire::SocketAddress to;
     if (family == AF_UNSPEC && !file->stream) {
         request.a = 1;
-    } else if (!get_address(to, address, length)) {
+    } else if (!get_address(*file, to, address, length)) {
         return -1;
     }
     return static_cast<int>(named(device_call(request, &to, sizeof to, nullptr, 0, true), to));
@@ -192,7 +245,7 @@ SHIM_EXPORT int accept4(int fd, sockaddr* from, socklen_t* length, int flags) {
         device_call(device_request(*file, wire::Op::Accept), nullptr, 0, &peer, sizeof peer, true));
     if (handle < 0) return -1;
     const int made = new_descriptor(handle, true, flags);
-    if (made >= 0 && !put_address(peer, from, length)) {
+    if (made >= 0 && !put_address(*file, peer, from, length)) {
         const int error = errno;
         close(made);
         return fail(error);
@@ -222,7 +275,7 @@ int name_of_end(OpenFile& file, bool peer, sockaddr* name, socklen_t* length) {
     wire::SocketAddress address;
     if (device_call(request, nullptr, 0, &address, sizeof address) < 0) return -1;
     if (name == nullptr || length == nullptr) return fail(EFAULT);
-    return put_address(address, name, length) ? 0 : -1;
+    return put_address(file, address, name, length) ? 0 : -1;
 }
 }  // namespace
 

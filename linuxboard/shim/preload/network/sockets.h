@@ -21,6 +21,10 @@ OpenFile* socket_file(int fd);
 /// Names once what the network has refused, by errno; `result` and errno stay.
 std::int64_t named(std::int64_t result, const wire::SocketAddress& address);
 
+/// As much of an address as there is room for, as the kernel does; false and errno if it cannot be put.
+bool put_address(const OpenFile& file, const wire::SocketAddress& address, sockaddr* theirs,
+                 socklen_t* length);
+
 /// What a socket's call sends, from a program's or this library's memory; `to` may be nullptr.
 std::int64_t send_bytes(OpenFile& file, const char* data, std::size_t size, int flags,
                         const wire::SocketAddress* to);
@@ -44,8 +48,5 @@ bool is_numeric(const char* text, std::uint32_t& address);
 
 /// A descriptor of a file that is of the network (network_files.cpp), -1 for another path.
 int open_network_file(const char* path);
-
-// interface_calls.cpp
-constexpr int kLoopbackIndex = 1, kWirelessIndex = 2;
 
 }  // namespace puckloop::shim
