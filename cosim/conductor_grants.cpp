@@ -65,6 +65,7 @@ void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
 /// among those that cannot its stretches would end at once.
 bool Conductor::State::may_run_ahead(std::size_t n) {
     const NodeState& state = handles_[n]->state();
+    if (slots_[n].before_look) return false;
     if (state.runs_ahead && !state.bounded) others_run_ahead_ = true;
     return state.runs_ahead && (!state.bounded || others_run_ahead_);
 }
@@ -110,8 +111,15 @@ void Conductor::State::take_deliveries(std::size_t sender) {
     for (const TraceRecord& record : deliveries_) {
         merger_.add(record);
         if (lost(record)) continue;
-        Slot& slot = slots_[network_->wire(record).to];
-        if (record.time < slot.asked) too_late(sender, network_->wire(record).to, record.time);
+        const Wire& wire = network_->wire(record);
+        Slot& slot = slots_[wire.to];
+        if (record.time < slot.asked) {
+            if (!handles_[wire.to]->samples(wire.to_port)) too_late(sender, wire.to, record.time);
+            if (!in_windows_) {
+                show_sampled(record);
+                continue;
+            }
+        }
         slot.queue.push_back(record);
         std::push_heap(slot.queue.begin(), slot.queue.end(), after);
     }

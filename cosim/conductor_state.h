@@ -65,7 +65,10 @@ class Conductor::State {
         std::vector<TraceRecord> queue;  ///< final and not handled; heap, earliest first
         std::vector<TraceRecord> taken;  ///< what comes in, for the grant under way
         std::vector<Message> inbox;      ///< the same, as the node gets it
+        std::vector<TraceRecord> left;   ///< what it did not take
+        Time known = kNever;             ///< of a node with SampledInputs: what comes in there, before this
         std::vector<PortEcho> echoes;
+        bool before_look = false;  ///< left windows ahead of what it looks at (SampledInputs)
         bool stop_seen = false;
         bool wound_up = false;
         double pace = 0.0;  ///< wall ns that a simulated ps takes it, about
@@ -112,11 +115,15 @@ class Conductor::State {
     void chop(std::size_t n, Time& until, Time& ahead);
     // conductor_windows.cpp
     void loop_in_windows();
+    std::vector<bool> sampled_channels() const;
+    void show_sampled();
+    void show_sampled(const TraceRecord& record);
     void leave_windows();
     void window();
     void share_window();
     void advance_shares();
     bool advance_in_window(std::size_t n);
+    void advance_sampling(std::size_t n);
     void resume_in_window();
     void take_window(std::size_t n);
     void collect();

@@ -17,13 +17,13 @@ constexpr std::size_t kWorthSharingNodes = 4;
 
 void Conductor::State::loop_in_windows() {
     pending_.resize(slots_.size());
-    windows_.connect(network_->channels(), slots_.size());
+    windows_.connect(network_->channels(), sampled_channels(), slots_.size());
     while (true) {
         take_interrupt();
         for (std::size_t n = 0; n < slots_.size(); ++n)
             pending_[n] = slots_[n].queue.empty() ? kNever : slots_[n].queue.front().time;
         windows_.plan(pending_, times_, limits());
-        if (windows_.complete()) return;
+        if (windows_.complete()) return show_sampled();
         if (windows_.chosen().empty()) return leave_windows();
         window();
         if (writing_) {  // perhaps no longer
@@ -35,13 +35,43 @@ void Conductor::State::loop_in_windows() {
     }
 }
 
+/// Of the channels, those at which the receiver only looks (SampledInputs).
+std::vector<bool> Conductor::State::sampled_channels() const {
+    std::vector<bool> sampled(network_->channels().size());
+    for (std::size_t w = 0; w < network_->wire_count(); ++w) {
+        const Wire& wire = network_->wires()[w];
+        sampled[w] = handles_[wire.to]->samples(wire.to_port);
+    }
+    return sampled;
+}
+
+/// Nodes take in what came from before where they are, and they have not looked at.
+void Conductor::State::show_sampled() {
+    for (std::size_t n = 0; n < slots_.size(); ++n) {
+        Slot& slot = slots_[n];
+        if (slot.queue.empty() || slot.queue.front().time >= times_[n].granted) continue;
+        slot.asked = slot.known = times_[n].granted;
+        advance_sampling(n);
+    }
+}
+
+/// After the windows: what a node that is ahead of it only looks at.
+void Conductor::State::show_sampled(const TraceRecord& record) {
+    const Wire& wire = network_->wire(record);
+    Slot& slot = slots_[wire.to];
+    slot.inbox.assign(1, {record.time, wire.to_port, record.payload});
+    handles_[wire.to]->advance_sampling(slot.asked, slot.asked, slot.inbox);
+}
+
 /// All wait for each other, as far as a plain grant goes. A node that hands something out at T and answers
 /// later than at once has it settled before it knows what comes in at T: nodes that run ahead show such
 /// things, and find out whether the wait is for good.
 void Conductor::State::leave_windows() {
     in_windows_ = false;
+    show_sampled();
     for (std::size_t n = 0; n < slots_.size(); ++n) {
         slots_[n].stale = true;
+        slots_[n].before_look = handles_[n]->samples() && windows_.known(n) < times_[n].granted;
         times_[n].runs_ahead = may_run_ahead(n);
         times_[n].horizon = handles_[n]->state().horizon;
     }
@@ -52,10 +82,11 @@ void Conductor::State::window() {
     shares_.clear();
     const std::vector<Windows::Step>& steps = windows_.chosen();
     // Programs compute in processes of their own meanwhile.
-    for (const auto& [n, to] : steps) {
+    for (const auto& [n, to, known] : steps) {
         Time until = to, ahead = to;
         if (chop_) chop(n, until, ahead);
         slots_[n].asked = slots_[n].asked_ahead = until;
+        slots_[n].known = known;
         ++grants_;
         ++slots_[n].grants;
         if (specs_[n].any_thread) {
@@ -66,7 +97,7 @@ void Conductor::State::window() {
         if (!advance_in_window(n)) suspended_.push_back(n);
     }
     share_window();
-    for (const auto& [n, to] : steps)
+    for (const auto& [n, to, known] : steps)
         if (std::find(suspended_.begin(), suspended_.end(), n) == suspended_.end()) take_window(n);
     resume_in_window();
 }
@@ -107,12 +138,41 @@ void Conductor::State::advance_shares() {
 
 /// As far as it was asked to; false where it waits for its program.
 bool Conductor::State::advance_in_window(std::size_t n) {
+    if (handles_[n]->samples()) {
+        advance_sampling(n);
+        return true;
+    }
     Slot& slot = slots_[n];
     slot.inbox.clear();
     slot.take_before(slot.asked, [&](const TraceRecord& record) {
         slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
     });
     return handles_[n]->advance(slot.asked, slot.inbox);
+}
+
+/// The same for a node that may end before that, where it would look at what is not known.
+void Conductor::State::advance_sampling(std::size_t n) {
+    Slot& slot = slots_[n];
+    NodeHandle& node = *handles_[n];
+    slot.inbox.clear();
+    slot.taken.clear();
+    slot.take_before(slot.asked, [&](const TraceRecord& record) {
+        const PortIndex port = network_->wire(record).to_port;
+        if (record.time >= slot.known && node.samples(port)) {
+            slot.left.push_back(record);
+            return;
+        }
+        slot.inbox.push_back({record.time, port, record.payload});
+        slot.taken.push_back(record);
+    });
+    node.advance_sampling(slot.asked, slot.known, slot.inbox);
+    for (; !slot.taken.empty() && slot.taken.back().time >= node.reached(); slot.taken.pop_back())
+        slot.left.push_back(slot.taken.back());
+    for (const TraceRecord& record : slot.left) {
+        slot.queue.push_back(record);
+        std::push_heap(slot.queue.begin(), slot.queue.end(), after);
+    }
+    slot.left.clear();
 }
 
 /// The rest of the window for those that wait for their programs.
@@ -134,6 +194,8 @@ void Conductor::State::take_window(std::size_t n) {
     network_->take_final(n, handles_[n]->outbox(), reached,
                          slot.inbox.empty() ? kNever : slot.inbox.front().time, deliveries_, changes_);
     windows_.update(n, network_->channels());
+    windows_.note_look(n, reached < slot.asked);
+    slot.asked = slot.asked_ahead = reached;
     times_[n].granted = times_[n].ahead = reached;
     take_deliveries(n);
     take_stop(n, before);

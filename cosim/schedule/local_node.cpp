@@ -39,6 +39,9 @@ class LocalNode : public NodeHandle {
         node_ = std::make_unique<RunAhead>(std::move(node));
         node_->read_state(state_);
         has_state_ = node_->has_state();
+        if (const SampledInputs* sampling = node_->sampling())
+            for (std::size_t port = 0; port < ports_.size(); ++port)
+                sampled_.push_back(sampling->sampled(static_cast<PortIndex>(port)));
     }
 
     void await_ready() override {}
@@ -63,20 +66,15 @@ class LocalNode : public NodeHandle {
     }
 
     bool advance(Time until, const std::vector<Message>& inbox) override {
-        const Node& node = node_->node();
         if (suspendable_) return NodeHandle::advance(until, inbox);
         guarded("stopped", [&] { node_->advance_to(until, inbox, outbox_); });
-        advanced_ = {until, until, outbox_.size()};
-        for (const PortIndex port : linked_) {
-            PortState& state = state_.ports[port];
-            state.earliest_output = node.earliest_output(port);
-            state.lookahead = node.lookahead(port);
-            if (ports_[port].kind == PortKind::Uart) state.begun = node.begun(port);
-        }
-        state_.stop = node.stop();
-        state_.wound_up = node.wound_up();
-        state_.runs_ahead = node_->can_go_back();
+        read_linked();
         return true;
+    }
+
+    void advance_sampling(Time until, Time known, const std::vector<Message>& inbox) override {
+        guarded("stopped", [&] { node_->advance_sampling(until, known, inbox, outbox_); });
+        read_linked();
     }
 
     void wind_up(int signal) override {
@@ -106,6 +104,21 @@ class LocalNode : public NodeHandle {
     }
 
   private:
+    /// After the node went straight to where it now is.
+    void read_linked() {
+        const Node& node = node_->node();
+        advanced_ = {node_->reached(), node_->reached(), outbox_.size()};
+        for (const PortIndex port : linked_) {
+            PortState& state = state_.ports[port];
+            state.earliest_output = node.earliest_output(port);
+            state.lookahead = node.lookahead(port);
+            if (ports_[port].kind == PortKind::Uart) state.begun = node.begun(port);
+        }
+        state_.stop = node.stop();
+        state_.wound_up = node.wound_up();
+        state_.runs_ahead = node_->can_go_back();
+    }
+
     template <typename Work>
     void guarded(const char* what, Work work) {
         try {

@@ -109,6 +109,7 @@ class Network {
     Restored restore(const std::vector<WireState>& saved, const std::vector<TraceRecord>& in_flight,
                      Time time, const std::vector<bool>& has_state, std::uint64_t unlinked);
     std::size_t wire_count() const { return wires_.size(); }
+    const std::vector<Wire>& wires() const { return wires_; }
     /// Where what is sent by a port goes, or kNobody.
     std::size_t wire_of(std::size_t n, PortIndex port) const { return port_wire_[n][port]; }
     Time delivery(std::size_t w, const Message& message) const {

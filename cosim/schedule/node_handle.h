@@ -85,6 +85,11 @@ class NodeHandle {
         grant({until, until, until}, inbox, {});
         return poll(false);
     }
+    /// The node only looks at what some ports bring (SampledInputs); and it does at what this one brings.
+    bool samples() const { return !sampled_.empty(); }
+    bool samples(PortIndex port) const { return port < sampled_.size() && sampled_[port]; }
+    /// As advance(), of such a node; advanced() gives how far it came (SampledInputs::advance_sampling()).
+    virtual void advance_sampling(Time /*until*/, Time /*known*/, const std::vector<Message>& /*inbox*/) {}
     /// The ports that lead somewhere.
     void set_linked(std::vector<PortIndex> ports) { linked_ = std::move(ports); }
     /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
@@ -112,6 +117,7 @@ class NodeHandle {
     std::vector<Message> outbox_;
     Advanced advanced_;
     bool has_state_ = false;
+    std::vector<bool> sampled_;  ///< by port; empty: none is
 };
 
 /// A node in this process.

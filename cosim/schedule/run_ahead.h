@@ -11,6 +11,7 @@
 #include "cosim/core/bounded_rewindable.h"
 #include "cosim/core/message.h"
 #include "cosim/core/node.h"
+#include "cosim/core/sampled_inputs.h"
 #include "cosim/core/stateful_node.h"
 #include "cosim/core/work_counts.h"
 #include "cosim/schedule/node_handle.h"
@@ -29,6 +30,7 @@ class RunAhead {
     explicit RunAhead(std::unique_ptr<Node> node)
         : node_(std::move(node)),
           stateful_(dynamic_cast<StatefulNode*>(node_.get())),
+          sampling_(dynamic_cast<SampledInputs*>(node_.get())),
           bounded_(dynamic_cast<const BoundedRewindable*>(node_->rewindable())) {}
 
     const Node& node() const { return *node_; }
@@ -56,6 +58,16 @@ class RunAhead {
         node_->advance(until, inbox, outbox);
         note_advance(reached_, until, inbox.size());
         reached_ = ahead_ = until;
+    }
+
+    /// The same for a node that only looks at some inputs, to where it comes.
+    const SampledInputs* sampling() const { return sampling_; }
+    void advance_sampling(Time until, Time known, std::span<const Message> inbox,
+                          std::vector<Message>& outbox) {
+        outbox.clear();
+        const Time before = reached_;
+        reached_ = ahead_ = sampling_->advance_sampling(until, known, inbox, outbox);
+        note_advance(before, reached_, inbox.size());
     }
 
     /// What the node states of its future, having run ahead: its EOTs are beyond what is foreseen, its
@@ -107,6 +119,7 @@ class RunAhead {
 
     std::unique_ptr<Node> node_;
     StatefulNode* stateful_;            ///< the node, if it is one
+    SampledInputs* sampling_;           ///< the node, if it is one
     const BoundedRewindable* bounded_;  ///< the node, if it is one
     Time reached_ = 0;
     Time ahead_ = 0;  ///< the node stands there

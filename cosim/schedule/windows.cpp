@@ -5,14 +5,17 @@
 
 namespace puckloop::cosim {
 
-void Windows::connect(const std::vector<Channel>& channels, std::size_t nodes) {
+void Windows::connect(const std::vector<Channel>& channels, const std::vector<bool>& sampled,
+                      std::size_t nodes) {
     edges_.clear();
+    looks_.assign(nodes, false);
     first_.clear();
     for (std::size_t n = 0; n < nodes; ++n) {
         first_.push_back(edges_.size());
         for (std::size_t c = 0; c < channels.size(); ++c)
             if (channels[c].from == n)
-                edges_.push_back({static_cast<std::uint32_t>(channels[c].to), static_cast<std::uint32_t>(c)});
+                edges_.push_back(
+                    {static_cast<std::uint32_t>(channels[c].to), sampled[c], static_cast<std::uint32_t>(c)});
     }
     first_.push_back(edges_.size());
     base_.resize(nodes);
@@ -43,14 +46,14 @@ void Windows::plan(const std::vector<Time>& pending, const std::vector<NodeTimes
         reached_ = std::min(reached_, node.granted);
     complete_ = reached_ >= limits.end;
     chosen_.clear();
-    find_earliest(pending);
+    find_earliest(pending, nodes);
     find_limits();
     if (!complete_) choose(pending, nodes, limits);
 }
 
 /// The first instant at which something reaches each node: from EOTs and what is pending along the shortest
 /// ways. Begun with the earliest, hardly a node comes twice.
-void Windows::find_earliest(const std::vector<Time>& pending) {
+void Windows::find_earliest(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes) {
     earliest_ = pending;
     for (const Edge& edge : edges_)
         earliest_[edge.to] = std::min(earliest_[edge.to], edge.base);
@@ -59,7 +62,8 @@ void Windows::find_earliest(const std::vector<Time>& pending) {
     for (bool changed = true; changed;) {
         changed = false;
         for (const std::uint32_t n : order_) {
-            const Time time = earliest_[n];
+            // What a node only looks at may come from before where it is, and changes nothing there.
+            const Time time = earliest_[n] = std::max(earliest_[n], nodes[n].granted);
             if (time >= relaxed_[n]) continue;
             relaxed_[n] = time;
             if (lookahead_[n] == kNever) continue;
@@ -76,12 +80,14 @@ void Windows::find_earliest(const std::vector<Time>& pending) {
 
 void Windows::find_limits() {
     limit_.assign(earliest_.size(), kNever);
+    known_.assign(earliest_.size(), kNever);
     floor_ = kNever;
     for (std::size_t n = 0; n < earliest_.size(); ++n)
         for (std::size_t e = first_[n]; e < first_[n + 1]; ++e) {
             const Edge& edge = edges_[e];
             const Time time = std::min(edge.base, later(earliest_[n], edge.lookahead));
-            limit_[edge.to] = std::min(limit_[edge.to], time);
+            Time& until = edge.sampled ? known_[edge.to] : limit_[edge.to];
+            until = std::min(until, time);
             floor_ = std::min(floor_, time);
         }
 }
@@ -98,17 +104,18 @@ void Windows::choose(const std::vector<Time>& pending, const std::vector<NodeTim
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         next_[n] = std::min(base_[n], later(pending[n], lookahead_[n]));
         if (nodes[n].granted >= end) continue;
-        if (first == kNobody || next_[n] < next_[first]) first = n;
+        if (!waits_to_look(n, nodes[n].granted) && (first == kNobody || next_[n] < next_[first])) first = n;
         last_holds_up = last_holds_up || limit_[n] > window;
     }
-    const Time round = std::max(next_[first], limit_[first]);
+    if (first == kNobody) return;
+    const Time round = std::max(next_[first], std::min(limit_[first], known_[first]));
     for (const bool any : {false, true}) {
         for (std::size_t n = 0; n < nodes.size(); ++n) {
             const Time until = std::min(limit_[n], ceiling), granted = nodes[n].granted;
-            if (until <= granted) continue;
+            if (until <= granted || waits_to_look(n, granted)) continue;
             if (any || next_[n] <= round || until == end || (last_holds_up && granted == reached_) ||
                 until - granted >= stretch)
-                chosen_.push_back({n, until});
+                chosen_.push_back({n, until, known_[n]});
         }
         if (!chosen_.empty()) return;
     }

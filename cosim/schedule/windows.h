@@ -18,12 +18,15 @@ class Windows {
     struct Step {
         std::size_t node = 0;
         Time until = 0;
+        Time known = kNever;  ///< what comes in by sampled channels, before this (SampledInputs)
     };
 
-    /// Who can send to whom; that stays so.
-    void connect(const std::vector<Channel>& channels, std::size_t nodes);
+    /// Who can send to whom, and at what of that the receiver only looks; that stays so.
+    void connect(const std::vector<Channel>& channels, const std::vector<bool>& sampled, std::size_t nodes);
     /// What leaves node `n` has another EOT or lookahead.
     void update(std::size_t n, const std::vector<Channel>& channels);
+    /// Node `n` came to where it has to look, before the end of its step.
+    void note_look(std::size_t n, bool looks) { looks_[n] = looks; }
     /// `pending`: of each node, the first message that it has not handled, or kNever.
     void plan(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
               const ScheduleLimits& limits);
@@ -36,26 +39,31 @@ class Windows {
     Time reached() const { return reached_; }
     /// Nothing not yet known can reach node `n` before this.
     Time limit(std::size_t n) const { return limit_[n]; }
+    /// Nothing not yet known that it only looks at can reach node `n` before this.
+    Time known(std::size_t n) const { return known_[n]; }
     /// No message still to come on any channel is delivered before this.
     Time floor() const { return floor_; }
 
   private:
     struct Edge {
         std::uint32_t to = 0;
+        bool sampled = false;
         std::uint32_t channel = 0;
         Time base = 0;
         Time lookahead = 0;
     };
 
-    void find_earliest(const std::vector<Time>& pending);
+    void find_earliest(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes);
     void find_limits();
+    bool waits_to_look(std::size_t n, Time granted) const { return looks_[n] && known_[n] <= granted; }
     void choose(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
                 const ScheduleLimits& limits);
 
     std::vector<Edge> edges_;             ///< by sender
     std::vector<std::size_t> first_;      ///< of each sender's edges; one more at the end
     std::vector<Time> base_, lookahead_;  ///< of each sender, the least of its edges'
-    std::vector<Time> earliest_, limit_, relaxed_, next_;
+    std::vector<Time> earliest_, limit_, known_, relaxed_, next_;
+    std::vector<bool> looks_;           ///< waits where it has to look
     std::vector<std::uint32_t> order_;  ///< nodes by their earliest time, about
     std::vector<Step> chosen_;
     bool complete_ = false;

@@ -8,6 +8,7 @@
 //   settle(until)        what the board does by itself before `until`
 //   push_reset_button()
 //   receive(message)     the board is at its time
+// and may have, in place of those below, takes_ahead(message) and held_back().
 
 #include "cosim/core/stateful_node.h"
 #include "emu/board/fault_parts.h"
@@ -33,6 +34,7 @@ class BoardNode : public cosim::StatefulNode, protected chip::BoardAccess {
                  std::vector<cosim::Message>& outbox) final {
         outbox_ = &outbox;
         for (const cosim::Message& message : inbox) {
+            if (self().takes_ahead(message)) continue;
             run_resets(message.time, true);
             run_faults(message.time, true);
             run_until(message.time);
@@ -85,17 +87,24 @@ class BoardNode : public cosim::StatefulNode, protected chip::BoardAccess {
     std::vector<cosim::Message>* outbox_ = nullptr;  ///< null between advances
     cosim::Time granted_ = 0;
 
-  private:
-    Self& self() { return static_cast<Self&>(*this); }
-
+    /// True if the message is taken, before its time: what it changes is seen to wherever it counts.
+    static bool takes_ahead(const cosim::Message&) { return false; }
+    /// True if the board's last run ended early (dspic::LookGate).
+    static bool held_back() { return false; }
+    /// The board to `until`, with its looks on the way.
     void run_until(cosim::Time until) {
         for (cosim::Time look = self().log_.next_look(); look <= until; look = self().log_.next_look()) {
             self().run_board(look);
+            if (self().held_back()) return;
             self().settle(look);
             self().look();
         }
         self().run_board(until);
     }
+
+  private:
+    Self& self() { return static_cast<Self&>(*this); }
+
     /// Presses the reset button where it is due before (or at) `until`.
     void run_resets(cosim::Time until, bool inclusive) {
         while (next_reset_ < resets_.size()) {

@@ -19,8 +19,23 @@ std::array<PeakDetector, kSensorCount> detectors(const PeakDetectorParameters& p
     return {((void)i, PeakDetector(parameters))...};
 }
 
-std::uint16_t bit(int index) {
+constexpr std::uint16_t bit(int index) {
     return static_cast<std::uint16_t>(1u << index);
+}
+
+// All demodulators are at one port, the first at this pin.
+constexpr auto kDemodulatorPort = static_cast<std::size_t>(Board::kDemodulators);
+constexpr int kFirstDemodulatorPin = 4;
+static_assert(std::all_of(wiring::kPins.begin(), wiring::kPins.end(), [](const PinUse& pin) {
+    return pin.role != Role::Demodulator || (static_cast<std::size_t>(pin.port) == kDemodulatorPort &&
+                                             pin.bit == kFirstDemodulatorPin + pin.index);
+}));
+constexpr double kCarrierSeen = 0.5;
+
+/// A demodulator that sees carrier pulls its pin low.
+std::uint16_t with_carrier(std::uint16_t levels, int demodulator, bool carrier) {
+    const std::uint16_t pin = bit(kFirstDemodulatorPin + demodulator);
+    return static_cast<std::uint16_t>(carrier ? levels & ~pin : levels | pin);
 }
 
 double clipped(SignalId id, double value) {
@@ -46,21 +61,43 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
 
 std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, cosim::Time now) {
     if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return std::nullopt;
-    values_[id] = clipped(id, value);
-    if (is_supply(id)) return std::nullopt;
-    if (id >= kPeak) {
-        peaks_[id - kPeak].set_input(values_[id], now);
+    if (is_supply(id)) {
+        values_[id] = clipped(id, value);
         return std::nullopt;
     }
-    for (const PinUse& pin : wiring::kPins) {
-        if (pin.role != Role::Demodulator || pin.index != id - kDemodulator) continue;
-        std::uint16_t& level = levels_[static_cast<std::size_t>(pin.port)];
-        const std::uint16_t before = level;
-        const bool carrier = values_[id] >= 0.5;
-        level = static_cast<std::uint16_t>(carrier ? level & ~bit(pin.bit) : level | bit(pin.bit));
-        if (level != before) return pin.port;
-    }
-    return std::nullopt;
+    const std::uint16_t before = levels_[kDemodulatorPort];
+    show(id, value, now);
+    if (levels_[kDemodulatorPort] == before) return std::nullopt;
+    return kDemodulators;
+}
+
+/// Light at a detector or a demodulator, from `now` on.
+void Board::show(SignalId id, double value, cosim::Time now) {
+    values_[id] = clipped(id, value);
+    if (id >= kPeak)
+        peaks_[id - kPeak].set_input(values_[id], now);
+    else
+        levels_[kDemodulatorPort] =
+            with_carrier(levels_[kDemodulatorPort], id - kDemodulator, values_[id] >= kCarrierSeen);
+}
+
+std::span<const std::string_view> Board::looks_at_light() {
+    // Demodulators, and who would look for their edges; then the resets' ports.
+    static constexpr std::string_view kNames[] = {
+        "CNEN1",  "CNEN2", "IC1CON", "IC2CON", "IC3CON", "IC4CON", "IC5CON", "IC6CON", "IC7CON", "IC8CON",
+        "U1MODE", "U1STA", "PMD1",   "PMD2",   "PMD3",   "PORTD",  "PORTA",  "LATA",   "TRISA",  "ODCA",
+        "PORTF",  "LATF",  "TRISF",  "ODCF",   "PORTG",  "LATG",   "TRISG",  "ODCG"};
+    return kNames;
+}
+
+std::span<const std::string_view> Board::other_modules() {
+    static constexpr std::string_view kNames[] = {"C1CTRL1", "C2CTRL1", "DCICON1"};
+    return kNames;
+}
+
+void Board::show_light(cosim::Time now) {
+    arriving_.take(
+        now, [this](const ArrivingLight::Change& change) { show(change.id, change.value, change.time); });
 }
 
 double Board::supply() const {
@@ -69,6 +106,11 @@ double Board::supply() const {
 }
 
 void Board::settle(cosim::Time now) {
+    show_light(now);
+    settle_potentiometer(now);
+}
+
+void Board::settle_potentiometer(cosim::Time now) {
     while (potentiometer_.due() <= now) {
         const cosim::Time due = potentiometer_.due();
         report(kPower, potentiometer_.settle(), due);
@@ -83,7 +125,9 @@ void Board::report(SignalId id, double value, cosim::Time now) {
 
 void Board::driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven, dspic::Cycle now) {
     const cosim::Time time = time_of(now);
-    settle(time);
+    // What an instruction drives counts from the cycle behind it on, and light before that was there first.
+    if (!arriving_.none() && now > 0) show_light(time_of(now - 1));
+    settle_potentiometer(time);
     const auto index = static_cast<std::size_t>(port);
     const auto high = static_cast<std::uint16_t>(levels & driven);
     const auto low = static_cast<std::uint16_t>(~levels & driven);
@@ -136,12 +180,30 @@ void Board::light(cosim::Time now) {
         report(static_cast<SignalId>(kEmitter + i), (emitters_ & bit(i)) != 0 ? 1 : 0, now);
 }
 
-std::uint16_t Board::levels(dspic::PortLetter port, dspic::Cycle /*now*/) {
+std::uint16_t Board::levels(dspic::PortLetter port, dspic::Cycle now) {
+    if (!arriving_.none()) show_light(time_of(now));
     return levels_[static_cast<std::size_t>(port)];
+}
+
+std::uint16_t Board::quiet_levels(dspic::PortLetter port, dspic::Cycle now) {
+    std::uint16_t levels = levels_[static_cast<std::size_t>(port)];
+    if (static_cast<std::size_t>(port) == kDemodulatorPort && !arriving_.none())
+        arriving_.look(time_of(now), [&levels](const ArrivingLight::Change& change) {
+            if (change.id < kPeak)
+                levels = with_carrier(levels, change.id - kDemodulator, change.value >= kCarrierSeen);
+        });
+    return levels;
+}
+
+dspic::Cycle Board::next_edge(dspic::PortLetter port, std::uint16_t, dspic::Cycle after) const {
+    if (static_cast<std::size_t>(port) != kDemodulatorPort || arriving_.none()) return dspic::kNoCycle;
+    const cosim::Time next = arriving_.next_pin(time_of(after));
+    return next == cosim::kNever ? dspic::kNoCycle : chip_->clock().first_cycle_at(next);
 }
 
 double Board::analog(int channel, dspic::Cycle now) {
     if (channel < kFirstPeakChannel || channel >= kFirstPeakChannel + kSensorCount) return 0.0;
+    if (!arriving_.none()) show_light(time_of(now));
     double counts = peaks_[static_cast<std::size_t>(channel - kFirstPeakChannel)].level(time_of(now));
     if (parameters_.adc_noise_counts > 0) counts += parameters_.adc_noise_counts * noise_.normal();
     const double clipped = counts > 0.0 ? counts : 0.0;
@@ -163,7 +225,7 @@ std::uint16_t Board::spi_exchange(int unit, std::uint16_t sent, int bits, dspic:
 void Board::output_compare_changed(int unit, dspic::Cycle now) {
     if (unit != kCarrierUnit || chip_ == nullptr) return;
     const cosim::Time time = time_of(now);
-    settle(time);
+    settle_potentiometer(time);
     const dspic::OutputCompareState state = chip_->output_compare(unit);
     const cosim::ClockDomain& clock = chip_->clock();
     const bool on = state.running && state.high > 0 && state.high < state.period;

@@ -16,6 +16,7 @@
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/dspic/peripherals/pins.h"
+#include "emu/rab_board/arriving_light.h"
 #include "emu/rab_board/peak_detector.h"
 #include "emu/rab_board/pin_table.h"
 #include "emu/rab_board/potentiometer.h"
@@ -24,7 +25,9 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace puckloop::rab {
 
@@ -68,6 +71,17 @@ class Board : public dspic::Pins {
     /// Sets an input signal from `now` on, clipped to its range. Returns the port whose pins changed, if any:
     /// the chip must hear of it. Outputs cannot be set; asking for it is ignored.
     std::optional<dspic::PortLetter> set_signal(SignalId id, double value, cosim::Time now);
+    /// The same for a demodulator or a peak detector, ahead of time: it shows where somebody looks. Before
+    /// settle() has passed it nothing but more light may be set.
+    void light_arrives(SignalId id, double value, cosim::Time time) { arriving_.add({time, id, value}); }
+    static bool is_light(SignalId id) { return id < kEmitter; }
+    static constexpr dspic::PortLetter kDemodulators = dspic::PortLetter::D;
+    /// Registers of the chip by which its program looks at light, or moves a peak detector's reset, and
+    /// control registers of modules that could take a reset's pin over.
+    static std::span<const std::string_view> looks_at_light();
+    static std::span<const std::string_view> other_modules();
+    /// All of it that arrives at or before `now`.
+    void show_light(cosim::Time now);
     /// The battery's voltage is lower by so much. The chip must hear of it (Chip::supply_changed()), as of
     /// signals that change the supply.
     void set_sag(double volts) { sag_ = volts; }
@@ -81,8 +95,8 @@ class Board : public dspic::Pins {
     std::uint16_t emitters() const { return emitters_; }
     const Potentiometer& potentiometer() const { return potentiometer_; }
 
-    /// Reports what the board did by itself at or before `now`. To be called before time is said to have
-    /// passed `now`.
+    /// Reports what the board did by itself at or before `now`, and shows the light of until then. To be
+    /// called before time is said to have passed `now`.
     void settle(cosim::Time now);
 
     chip::AnalogFaults& analog_faults() { return analog_faults_; }
@@ -93,6 +107,7 @@ class Board : public dspic::Pins {
         archive(noise_, potentiometer_, peaks_, low_, outputs_, levels_, gates_, emitters_, emitter_supply_,
                 analog_faults_, profile_);
         archive.bounded(sag_, 0.0, 1e3);
+        if constexpr (Archive::kLoads) arriving_ = {};
         for (double& value : values_)
             archive.bounded(value, -1e15, 1e15);
     }
@@ -103,6 +118,9 @@ class Board : public dspic::Pins {
     void driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven,
                 dspic::Cycle now) override;
     std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override;
+    std::uint16_t quiet_levels(dspic::PortLetter port, dspic::Cycle now) override;
+    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t monitored,
+                           dspic::Cycle after) const override;
     double analog(int channel, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
@@ -121,6 +139,8 @@ class Board : public dspic::Pins {
     cosim::Time time_of(dspic::Cycle now) const { return chip_ != nullptr ? chip_->clock().time_of(now) : 0; }
     void drive(const PinUse& pin, bool high, cosim::Time now);
     void light(cosim::Time now);
+    void settle_potentiometer(cosim::Time now);
+    void show(SignalId id, double value, cosim::Time now);
     void report(SignalId id, double value, cosim::Time now);
 
     BoardParameters parameters_;
@@ -136,6 +156,7 @@ class Board : public dspic::Pins {
     std::uint16_t gates_ = 0;
     std::uint16_t emitters_ = 0;
     bool emitter_supply_ = false;
+    ArrivingLight arriving_;  ///< none between two runs of the chip
     chip::AnalogFaults analog_faults_;
     double sag_ = 0.0;               ///< V
     std::optional<double> profile_;  ///< in place of the battery's

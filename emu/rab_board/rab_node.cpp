@@ -3,6 +3,8 @@
 #include "base/json.h"
 #include "emu/rab_board/rab_json.h"
 
+#include <algorithm>
+
 namespace puckloop::rab {
 
 RabNode::RabNode(const image::Image& image, const RabNodeOptions& options)
@@ -21,12 +23,58 @@ RabNode::RabNode(const image::Image& image, const RabNodeOptions& options)
     chip_options.ppm = options.board.crystal_ppm;
     chip_ = std::make_unique<dspic::Chip>(dspic::dspic33fj256gp710(), board_, chip_options);
     board_.connect(*chip_);
+    gate_.emplace(*chip_, Board::looks_at_light(), Board::other_modules());
     switch_on(image, options.skip_idle, options.faults);
 }
 
 /// What the board does by itself before `until`.
 void RabNode::settle(cosim::Time until) {
     if (until > 0) board_.settle(until - 1);
+}
+
+/// The chip notices no edges of light, and no fault draws which burst it loses when it comes.
+bool RabNode::looks_by_program() const {
+    return !faults_ && !chip_->monitors(Board::kDemodulators);
+}
+
+cosim::Time RabNode::advance_sampling(cosim::Time until, cosim::Time known,
+                                      std::span<const cosim::Message> inbox,
+                                      std::vector<cosim::Message>& outbox) {
+    if (!looks_by_program() || !gate_->applies()) {
+        until = std::max(granted_, std::min(until, known));
+        const auto end = std::find_if(inbox.begin(), inbox.end(),
+                                      [until](const cosim::Message& m) { return m.time >= until; });
+        advance(until, {inbox.begin(), end}, outbox);
+        return until;
+    }
+    outbox_ = &outbox;
+    gate_->open(known);
+    for (const cosim::Message& message : inbox) {
+        if (takes_ahead(message)) continue;
+        run_until(message.time);
+        if (held_back()) break;
+        receive(message);
+    }
+    if (!held_back()) run_until(until);
+    granted_ = held_back() ? chip_->now() : until;
+    gate_->lift();
+    settle(granted_);
+    outbox_ = nullptr;
+    return granted_;
+}
+
+/// Light shows where the program looks.
+bool RabNode::takes_ahead(const cosim::Message& message) {
+    const auto* signal = std::get_if<cosim::Signal>(&message.payload);
+    if (signal == nullptr || !Board::is_light(signal->id) || !looks_by_program()) return false;
+    double value = signal->value;
+    if (signal->id < kPeak) {
+        const bool carrier = value != 0.0;
+        note_carrier(signal->id - kDemodulator, carrier);
+        value = carrier ? 1.0 : 0.0;
+    }
+    board_.light_arrives(signal->id, value, message.time);
+    return true;
 }
 
 void RabNode::receive(const cosim::Message& message) {
@@ -41,18 +89,22 @@ void RabNode::receive(const cosim::Message& message) {
 }
 
 void RabNode::receive_signal(const cosim::Signal& signal, cosim::Time now) {
+    board_.show_light(now);
     const int receiver = signal.id - kDemodulator;
     if (receiver >= 0 && receiver < kSensorCount) {
-        const auto bit = static_cast<std::uint16_t>(1u << receiver);
-        const bool begins =
-            signal.value != 0.0 && !(faults_ && faults_->loses_burst(false, receiver + 1, now));
-        own_.seen = static_cast<std::uint16_t>(begins ? own_.seen | bit : own_.seen & ~bit);
+        note_carrier(receiver,
+                     signal.value != 0.0 && !(faults_ && faults_->loses_burst(false, receiver + 1, now)));
         show_carrier(receiver, now);
     } else if (const auto port = board_.set_signal(signal.id, signal.value, now)) {
         chip_->pins_changed(*port);
     } else if (Board::is_supply(signal.id)) {
         chip_->supply_changed();
     }
+}
+
+void RabNode::note_carrier(int receiver, bool seen) {
+    const auto bit = static_cast<std::uint16_t>(1u << receiver);
+    own_.seen = static_cast<std::uint16_t>(seen ? own_.seen | bit : own_.seen & ~bit);
 }
 
 void RabNode::receive_i2c(const cosim::I2cPhase& phase, cosim::Time now) {

@@ -1,9 +1,11 @@
 #pragma once
 // The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
 
+#include "cosim/core/sampled_inputs.h"
 #include "emu/board/dspic_node.h"
 #include "emu/board/i2c_device.h"
 #include "emu/board/nvm_file.h"
+#include "emu/dspic/chip/look_gate.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_log.h"
@@ -26,7 +28,9 @@ struct RabNodeOptions {
     std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class RabNode : private BoardListener, public board::DspicNode<RabNode, Board, RabLog> {
+class RabNode : private BoardListener,
+                public board::DspicNode<RabNode, Board, RabLog>,
+                public cosim::SampledInputs {
     friend board::BoardNode<RabNode>;
     friend board::DspicNode<RabNode, Board, RabLog>;
 
@@ -44,16 +48,24 @@ class RabNode : private BoardListener, public board::DspicNode<RabNode, Board, R
     std::string finish() override;
     cosim::Rewindable* rewindable() override { return &mark_; }
 
+    bool sampled(cosim::PortIndex port) const override { return port == kIr; }
+    cosim::Time advance_sampling(cosim::Time until, cosim::Time known, std::span<const cosim::Message> inbox,
+                                 std::vector<cosim::Message>& outbox) override;
+
   private:
     static constexpr int kI2cUnit = rab::kI2cUnit;
 
     void settle(cosim::Time until);
+    bool takes_ahead(const cosim::Message& message);
+    bool held_back() const { return gate_->held(); }
+    bool looks_by_program() const;
     void receive(const cosim::Message& message);
     void receive_signal(const cosim::Signal& signal, cosim::Time now);
     void receive_i2c(const cosim::I2cPhase& phase, cosim::Time now);
     void set_carrier(std::uint16_t receivers) override;
     void set_sag(double volts) override;
     void set_battery(std::optional<double> volts) override;
+    void note_carrier(int receiver, bool seen);
     /// The demodulator sees a carrier of the medium's, or one of a fault.
     void show_carrier(int receiver, cosim::Time now);
 
@@ -81,6 +93,7 @@ class RabNode : private BoardListener, public board::DspicNode<RabNode, Board, R
     RabNodeOptions options_;
     board::I2cDeviceTimes i2c_times_;
     Own own_;
+    std::optional<dspic::LookGate> gate_;  ///< before looks at light; set once there is a chip
     board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
 };
 

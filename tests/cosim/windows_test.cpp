@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace puckloop::cosim {
@@ -41,7 +42,7 @@ TEST_CASE("windows have the limits of bounds") {
         const auto count = static_cast<std::size_t>(2 + random.below(12));
         std::vector<Channel> channels = drawn_channels(random, count);
         Windows windows;
-        windows.connect(channels, count);
+        windows.connect(channels, std::vector<bool>(channels.size()), count);
         for (int turn = 0; turn < 3; ++turn) {
             if (!channels.empty()) {
                 Channel& changed = channels[random.below(channels.size())];
@@ -67,6 +68,41 @@ TEST_CASE("windows have the limits of bounds") {
                 REQUIRE(step.until <= std::min<Time>(bounds.limit(step.node), 10 * kMillisecond));
         }
     }
+}
+
+TEST_CASE("what a node only looks at does not limit it before it looks") {
+    // 0 -> 1 is looked at, 2 -> 1 is not; 1 -> 0 is there so that 1 matters to somebody.
+    const std::vector<Channel> channels{{0, 1, 100, kNever}, {2, 1, 500, kNever}, {1, 0, 0, 20}};
+    Windows windows;
+    windows.connect(channels, {true, false, false}, 3);
+    std::vector<NodeTimes> nodes(3);
+    const std::vector<Time> none(3, kNever);
+    const auto step_of = [&](std::size_t node) -> std::optional<Windows::Step> {
+        windows.plan(none, nodes, {kSecond, kNever, 10 * kMillisecond});
+        for (const Windows::Step& step : windows.chosen())
+            if (step.node == node) return step;
+        return std::nullopt;
+    };
+    const auto first = step_of(1);
+    REQUIRE(first);
+    CHECK(first->until == 500);
+    CHECK(first->known == 100);
+
+    nodes[1].granted = 300;  // beyond what is known, and now it has to look
+    windows.note_look(1, true);
+    CHECK_FALSE(step_of(1));
+    windows.note_look(1, false);  // or not yet
+    CHECK(step_of(1));
+    windows.note_look(1, true);
+    std::vector<Channel> later = channels;
+    later[0].base = 301;
+    windows.update(0, later);
+    CHECK(step_of(1));
+    // It reaches nobody before where it is, whatever it looks at.
+    later[2].base = 300;
+    windows.update(1, later);
+    step_of(1);
+    CHECK(windows.limit(0) == 300);
 }
 
 TEST_CASE("the trace in windows is the one of nodes that run ahead") {

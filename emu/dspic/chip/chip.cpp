@@ -96,6 +96,10 @@ void Chip::run_until(Time until) {
             parts.arrive(std::min(parts.until, parts.clock.time_of(parts.core.cycle())));
             return;
         }
+        if (parts.core.held_back()) {
+            parts.until = std::min(parts.until, parts.clock.time_of(parts.core.cycle()));
+            break;
+        }
         if (parts.until_cycle() <= parts.core.cycle()) break;
     }
     parts.arrive(parts.until);
@@ -154,6 +158,10 @@ void Chip::can_news(int unit, const cosim::CanMessage& message) {
 
 void Chip::pins_changed(PortLetter port) {
     parts_->ports.outside_changed(port, parts_->message_cycle());
+}
+
+bool Chip::monitors(PortLetter port) const {
+    return parts_->ports.monitors(port);
 }
 
 void Chip::supply_changed() {

@@ -173,6 +173,8 @@ class Chip {
     /// Levels that Pins::levels() reports for this port changed now: edges for INTx, CN, timer clocks and
     /// gates.
     void pins_changed(PortLetter port);
+    /// Edges at one of the port's pins make a difference by themselves; else only reads of it do.
+    bool monitors(PortLetter port) const;
     /// Pins::supply() is another one now.
     void supply_changed();
 

@@ -124,6 +124,12 @@ void Core::reset(ResetCause cause) {
 Core::Outcome Core::run(Cycle until) {
     return run_until(*machine_, until);
 }
+void Core::hold_before(Cycle from, const RegisterSet* registers) {
+    machine_->gate = {from, registers, false};
+}
+bool Core::held_back() const {
+    return machine_->gate.held;
+}
 void Core::end_run() {
     machine_->end_requested = true;
     machine_->limit = 0;

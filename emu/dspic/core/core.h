@@ -12,6 +12,7 @@
 #include "emu/dspic/machine/core_observer.h"
 #include "emu/dspic/machine/core_state.h"
 #include "emu/dspic/machine/event_queue.h"
+#include "emu/dspic/machine/gate.h"
 #include "emu/dspic/machine/interrupts.h"
 #include "emu/dspic/machine/sfr_space.h"
 #include "emu/dspic/machine/stays.h"
@@ -63,6 +64,10 @@ class Core {
     /// From inside a hook or event handler: the run() in progress returns Until before its next instruction
     /// (the clock's rate changed, so that its `until` is another cycle now).
     void end_run();
+    /// run() ends, as if its `until` were there, before an instruction that begins at `from` or later and may
+    /// access one of the registers, and before a reset from then on. kNoCycle: it does not. Whose list stays.
+    void hold_before(Cycle from, const RegisterSet* registers);
+    bool held_back() const;  ///< the last run() ended so
     /// Exactly one instruction (or one interrupt entry, or one iteration of a repeated instruction); the
     /// chip's own events up to its start are serviced first.
     void step();

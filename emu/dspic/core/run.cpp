@@ -29,6 +29,7 @@ void run_repeated(Machine& m) {
         ++m.instructions;
         return;
     }
+    if (m.limit > m.gate.from) m.limit = std::max(m.gate.from, m.st.cycle + 1);
     if (op->form == FormId::NOP || op->form == FormId::NOPR) {
         const Cycle skipped = std::min<Cycle>(m.st.rcount, m.limit - m.st.cycle);
         m.st.rcount = static_cast<std::uint16_t>(m.st.rcount - skipped);
@@ -75,7 +76,7 @@ void execute_observed(Machine& m) {
         if (m.current->run == &decode_now) decode(m, m.code[m.current - m.code]);
         if (!looks()) return;
         m.current = execute_one(m, m.current);
-    } while (m.st.cycle < m.limit);
+    } while (m.st.cycle < m.limit && !m.stops_at(m.current));
     m.st.cycle += std::exchange(m.late, 0);
 }
 
@@ -255,13 +256,30 @@ bool starts_oscillator(Machine& m) {
     return m.wake_end > m.st.cycle;
 }
 
+/// The run ends here, before the operation that is next. What looks at the gate itself, before each
+/// operation, is asked here only where an event is due in this very cycle: that comes after whatever arrives
+/// in it.
+bool waits_at_gate(Machine& m) {
+    if (m.st.cycle < m.gate.from || m.gate.held) return m.gate.held;
+    const bool looks_itself = !m.instrument && !m.doze.on && !m.pass_pc && !(m.st.sr & sr::RA);
+    m.gate.held =
+        m.reset_request || ((m.events.next() <= m.st.cycle || !looks_itself) && may_access(m, m.current));
+    return m.gate.held;
+}
+
 }  // namespace
 
 Core::Outcome run_until(Machine& m, Cycle until) {
     m.end_requested = false;
     m.until = until;
+    m.gate.held = false;
     while (true) {
-        if (m.reset_request) perform_reset(m, *m.reset_request);
+        if (waits_at_gate(m)) {
+            m.until = until = std::min(until, m.st.cycle);
+            if (m.reset_request) return Core::Outcome::Until;
+        } else if (m.reset_request) {
+            perform_reset(m, *m.reset_request);
+        }
         const Cycle horizon = std::min(m.st.cycle, until == 0 ? 0 : until - 1);
         if (m.events.next() <= horizon && until != 0) {
             m.events.service(horizon);

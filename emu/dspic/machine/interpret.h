@@ -37,6 +37,7 @@ inline void run_interpreted(Machine& m) {
     const Op* op = m.current;
     do {
         m.current = op;
+        if (m.stops_at(op)) break;
         op = execute_one(m, op);
     } while (m.st.cycle < m.limit);
     m.current = op;

@@ -8,6 +8,7 @@
 #include "emu/dspic/machine/core_state.h"
 #include "emu/dspic/machine/event_queue.h"
 #include "emu/dspic/machine/exception_frame.h"
+#include "emu/dspic/machine/gate.h"
 #include "emu/dspic/machine/interrupts.h"
 #include "emu/dspic/machine/isa.h"
 #include "emu/dspic/machine/memory_map.h"
@@ -114,7 +115,8 @@ struct Machine {
     // Stops.
     std::vector<std::uint32_t> stops;
     bool stopped = false;
-    bool end_requested = false;            ///< Core::end_run()
+    bool end_requested = false;  ///< Core::end_run()
+    Gate gate;
     std::optional<std::uint32_t> pass_pc;  ///< this stop was reported; execute it next time
 
     // Power, stalls, watchdog.
@@ -172,6 +174,13 @@ struct Machine {
     std::uint32_t pc_of(const Op* op) const {
         const auto index = static_cast<std::uint32_t>(op - code);
         return index == code_words + kGuards - 1 ? outside_pc : index * 2;
+    }
+    /// True where the gate is in the way of the operation that is next: the run ends there.
+    bool stops_at(const Op* op) {
+        if (st.cycle < gate.from) [[likely]]
+            return false;
+        gate.held = may_access(*this, op);
+        return gate.held;
     }
     void bound_limit() {
         if (events.next() < limit) limit = events.next();

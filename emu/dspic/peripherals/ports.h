@@ -72,6 +72,8 @@ class Ports {
     void monitoring_changed();
     /// The next cycle after `after` at which the board itself may change a pin whose edges are monitored.
     Cycle next_edge(Cycle after) const;
+    /// Edges of one of its pins are, or were, looked for.
+    bool monitors(PortLetter port) const { return at(port).watched != 0; }
     /// The board may have changed such pins at cycle `at`.
     void sample_monitored(Cycle at);
     /// Called when monitoring_changed() found other pins than before; may stay empty.

@@ -67,6 +67,7 @@ void run_translated(Machine& m) {
             }
         }
         m.current = op;
+        if (m.stops_at(op)) break;
         const Op* const next = execute_one(m, op);
         at_head = resumes || next != op + 1;
         op = next;
