@@ -21,7 +21,7 @@ namespace puckloop::tools {
 namespace {
 
 struct OtherProgram {
-    const char* command;
+    std::string_view command;
     const char* program;
     const char* about;
     const char* package;  ///< of Debian
@@ -44,30 +44,29 @@ int become(const OtherProgram& other, std::vector<std::string> words) {
     std::fprintf(
         stderr,
         "puckloop: %s: %s: %s (expected Debian's package %s, or the program that ./puckloop %s builds)\n",
-        other.command, program.empty() ? other.program : program.c_str(),
-        std::strerror(program.empty() ? ENOENT : errno), other.package, other.command);
+        other.command.data(), program.empty() ? other.program : program.c_str(),
+        std::strerror(program.empty() ? ENOENT : errno), other.package, other.command.data());
     return 2;
 }
 
 }  // namespace
 
 std::optional<int> become_other(int argc, char** argv) {
+    const bool help = argc > 2 && std::string_view(argv[1]) == "help";
+    const std::string_view command = argc < 2 ? "" : argv[help ? 2 : 1];
+    const auto* const other = std::ranges::find(kPrograms, command, &OtherProgram::command);
+    if (other == kPrograms.end()) return std::nullopt;
     std::vector<std::string> words(argv, argv + argc);
-    const bool help = words.size() > 2 && words[1] == "help";
     if (help) {  // help COMMAND: the same as COMMAND --help
         words.erase(words.begin() + 1);
         words.emplace_back("--help");
     }
-    if (words.size() < 2) return std::nullopt;
-    const auto* const other = std::ranges::find(
-        kPrograms, words[1], [](const OtherProgram& one) { return std::string_view(one.command); });
-    if (other == kPrograms.end()) return std::nullopt;
     return become(*other, std::move(words));
 }
 
 void declare_other_programs(Command& app, int&) {
     for (const OtherProgram& other : kPrograms)
-        app.add_subcommand(other.command, other.about);
+        app.add_subcommand(std::string(other.command), other.about);
 }
 
 }  // namespace puckloop::tools
