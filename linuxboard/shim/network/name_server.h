@@ -3,6 +3,7 @@
 // by themselves (dig, c-ares, musl) find it in /etc/resolv.conf. It knows the computers of the network.
 
 #include "linuxboard/shim/network/network_spec.h"
+#include "linuxboard/shim/wire/interfaces.h"
 
 #include <cstdint>
 #include <map>
@@ -12,7 +13,7 @@
 
 namespace puckloop::linuxboard {
 
-inline constexpr protocols::IpAddress kResolver = 0x7f000035;
+inline constexpr protocols::IpAddress kResolver = wire::kResolver;
 
 class NameServer {
   public:

@@ -29,7 +29,7 @@ constexpr std::size_t kMostRequest = 65'536;
 constexpr std::uint8_t kUp = 6;          // IF_OPER_UP, RFC 2863
 constexpr unsigned kLowerUp = 1u << 16;  // IFF_LOWER_UP, of linux/if.h
 
-/// One message, or several behind each other.
+/// One message, or several in a row.
 class Messages {
   public:
     Messages(const nlmsghdr& request, std::uint32_t receiver) : request_(request), receiver_(receiver) {}
@@ -273,7 +273,7 @@ void NetworkStack::answer_netlink(Socket& socket, std::string_view request, Time
         out.begin(NLMSG_DONE, NLM_F_MULTI, int{0});
         put_answer(socket, out.take(), now);
     } else if (error != 0 || (head.nlmsg_flags & NLM_F_ACK) != 0) {
-        // With the request behind it, of success its head alone.
+        // The request follows, of success its head alone.
         out.begin(NLMSG_ERROR, 0, nlmsgerr{-error, head});
         if (error != 0) out.raw(request.substr(sizeof head));
         put_answer(socket, out.take(), now);

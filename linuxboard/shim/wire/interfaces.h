@@ -10,6 +10,8 @@
 namespace puckloop::linuxboard::wire {
 
 inline constexpr int kLoopbackIndex = 1, kWirelessIndex = 2;
+/// Where each board's name server is, as its /etc/resolv.conf says: 127.0.0.53.
+inline constexpr std::uint32_t kResolver = 0x7f000035;
 inline constexpr int kQueueLength = 1000;  // DEFAULT_TX_QUEUE_LEN
 
 struct Interface {

@@ -8,6 +8,7 @@
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/wire/interfaces.h"
 
 #include <arpa/nameser.h>
 #include <netdb.h>
@@ -24,8 +25,7 @@ using namespace puckloop::shim;
 
 namespace {
 
-constexpr std::uint32_t kServer = 0x7f000035;  // 127.0.0.53, as in the board's /etc/resolv.conf
-constexpr int kPatience = 5000, kTries = 2;    // ms; RES_TIMEOUT, RES_DFLRETRY
+constexpr int kPatience = 5000, kTries = 2;  // ms; RES_TIMEOUT, RES_DFLRETRY
 constexpr int kLongestQuestion = NS_HFIXEDSZ + NS_MAXCDNAME + NS_QFIXEDSZ;
 
 int failed(int error) {
@@ -54,7 +54,7 @@ int exchange(const unsigned char* question, int size, unsigned char* answer, int
     if (fd < 0) return -1;
     sockaddr_in server{};
     server.sin_family = AF_INET;
-    server.sin_addr.s_addr = htonl(kServer);
+    server.sin_addr.s_addr = htonl(wire::kResolver);
     server.sin_port = htons(NS_DEFAULTPORT);
     ssize_t got = connect(fd, reinterpret_cast<const sockaddr*>(&server), sizeof server);
     for (int i = 0; got == 0 && i < kTries; ++i) {
@@ -175,7 +175,7 @@ static void name_server(res_state state) {
     state->nscount = 1;
     state->nsaddr_list[0] = {};
     state->nsaddr_list[0].sin_family = AF_INET;
-    state->nsaddr_list[0].sin_addr.s_addr = htonl(kServer);
+    state->nsaddr_list[0].sin_addr.s_addr = htonl(wire::kResolver);
     state->nsaddr_list[0].sin_port = htons(NS_DEFAULTPORT);
     state->dnsrch[0] = nullptr;
 }
