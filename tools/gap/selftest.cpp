@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "gap/kinds/read_kind.h"
-#include "selftest/described.h"
+#include "selftest/described/described.h"
 #include "selftest/emulate/secret_cases.h"
 #include "selftest/run_cases.h"
 #include "tools/cli/check.h"

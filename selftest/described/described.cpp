@@ -1,4 +1,4 @@
-#include "selftest/described.h"
+#include "selftest/described/described.h"
 
 #include "base/error.h"
 #include "base/random.h"
