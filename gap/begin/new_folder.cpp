@@ -2,13 +2,16 @@
 
 #include "base/error.h"
 #include "base/text_file.h"
-#include "gap/data/columns.h"
 #include "gap/data/written.h"
 #include "gap/effects/effect.h"
+#include "gap/kinds/columns.h"
+#include "gap/kinds/description.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string_view>
 
@@ -19,18 +22,66 @@ namespace {
 constexpr const char* kRoles[] = {"measured", "truth", "set up", "noted"};  // in the order of Role
 
 /// What an instrument of the kind can report, as an example, where there is a usual one.
-const std::map<Kind, const char*> kUsualInstrument{
+const std::map<Kind::Builtin, const char*> kUsualInstrument{
     {Kind::Proximity, "reading = { floor = 0, ceiling = 4095, quantum = 1 }"},
     {Kind::Ground, "reading = { floor = 0, ceiling = 1023, quantum = 1 }"},
     {Kind::Microphone, "level = { floor = 0, quantum = 1 }"},
     {Kind::Motion, "x_m = { quantum = 0.0001 }   # step between two values that the tracker reports, m"},
     {Kind::Accelerometer, "ax = { floor = 0, ceiling = 4095, quantum = 1 }"}};
 
-bool in_header(const ColumnInfo& column) {
+/// Of a described kind all that its user named.
+bool in_header(const Kind& kind, const ColumnInfo& column) {
+    const Description* own = kind.description();
+    const auto all = columns_of(kind);
+    if (own != nullptr && &column < all.data() + own->own_columns) return true;
     return column.required || column.role != Role::Covariate || std::string_view(column.name) == "t_s";
 }
 
-std::string column_lines(Kind kind) {
+/// As experiment.toml names the kind: a described one by its file, which is beside it.
+std::string kind_reference(const Kind& kind) {
+    const Description* own = kind.description();
+    return own == nullptr ? std::string(kind_name(kind)) : own->file.filename().string();
+}
+
+/// What the instruments can report, where that is known.
+std::string instrument_lines(const Kind& kind) {
+    const Description* own = kind.description();
+    if (own == nullptr) {
+        const auto usual = kUsualInstrument.find(kind);
+        return usual == kUsualInstrument.end() ? "" : fmt::format("# {}\n", usual->second);
+    }
+    std::string text;
+    for (const DescribedObservable& one : own->observables) {
+        std::vector<std::string> known;
+        if (std::isfinite(one.instrument.floor))
+            known.push_back(fmt::format("floor = {:g}", one.instrument.floor));
+        if (std::isfinite(one.instrument.ceiling))
+            known.push_back(fmt::format("ceiling = {:g}", one.instrument.ceiling));
+        if (one.instrument.quantum > 0)
+            known.push_back(fmt::format("quantum = {:g}", one.instrument.quantum));
+        if (!known.empty())
+            text += fmt::format("# {} = {{ {} }}   # as {} has it\n", own->columns[one.column].name,
+                                fmt::join(known, ", "), own->file.filename().string());
+    }
+    return text;
+}
+
+/// Numbers of the simulator that this robot may have otherwise.
+std::string nominal_lines(const Kind& kind) {
+    std::string text;
+    if (const Description* own = kind.description())
+        for (const DescribedParameter& one : own->parameters)
+            text += fmt::format("# \"{}\" = {:g}{}\n", own->full_name(one), one.neutral,
+                                one.unit == "1" ? "" : "   # " + one.unit);
+    if (kind == Kind::Motion)
+        text += "# \"firmware.agenda\" = 0              # wheels keep to their commands (no staircase of "
+                "speeds)\n"
+                "# \"inverse_friction\" = 0             # no slip at starts; else 1 / friction of tyre and "
+                "floor\n";
+    return text;
+}
+
+std::string column_lines(const Kind& kind) {
     std::size_t width = 0;
     for (const ColumnInfo& column : columns_of(kind))
         width = std::max(width, std::string_view(column.name).size());
@@ -43,7 +94,7 @@ std::string column_lines(Kind kind) {
 }
 
 /// What to vary, from the experiments that tell the kind's causes apart.
-std::string advice_lines(Kind kind) {
+std::string advice_lines(const Kind& kind) {
     std::string text;
     for (const Effect* effect : effects_of(kind))
         text += fmt::format("#   {}: {}\n", effect->name, effect->separated_by);
@@ -56,17 +107,17 @@ std::filesystem::path run_file(std::size_t run) {
 
 }  // namespace
 
-std::string new_experiment_toml(Kind kind, std::size_t runs) {
+std::string new_experiment_toml(const Kind& kind, std::size_t runs) {
     const auto& first = columns_of(kind).front();
     std::string text =
         fmt::format("# A measured experiment of kind {0}, for `puckloop gap`. Fill in the CSV files, then\n"
                     "#     puckloop gap check DIR            what is wrong or missing, at once\n"
                     "#     puckloop gap DIR --out OUT        the verdict\n\n"
-                    "kind = \"{0}\"\n"
+                    "kind = \"{1}\"\n"
                     "title = \"\"                          # one line for the report's head\n"
                     "robot = \"\"                          # which robot: number, revision\n"
                     "# description, source, licence = \"...\" (optional)\n\n",
-                    kind_name(kind));
+                    kind_name(kind), kind_reference(kind));
     text += fmt::format(
         "# One CSV file per run: a header line, then one line per row; comma, semicolon or tab; a missing "
         "cell is\n"
@@ -77,16 +128,10 @@ std::string new_experiment_toml(Kind kind, std::size_t runs) {
         "# {} = {{ from = \"name in the file\", unit = \"{}\" }}\n\n",
         column_lines(kind), first.name, first.unit);
     text += "# [instrument]: the range and step of what is read out, where known.\n[instrument]\n";
-    if (const auto usual = kUsualInstrument.find(kind); usual != kUsualInstrument.end())
-        text += fmt::format("# {}\n", usual->second);
+    text += instrument_lines(kind);
     text +=
         "\n# [nominal]: where this robot is known to differ from the simulator (docs/gap.md).\n[nominal]\n";
-    if (kind == Kind::Motion)
-        text += "# \"firmware.agenda\" = 0              # wheels keep to their commands (no staircase of "
-                "speeds)\n"
-                "# \"inverse_friction\" = 0             # no slip at starts; else 1 / friction of tyre and "
-                "floor\n";
-    text += "\n";
+    text += nominal_lines(kind) + "\n";
     text += "# Conditions that hold for all runs, in words.\n[conditions]\n# light = \"dark\"\n\n";
     text += fmt::format("# Only runs are independent of each other: record at least four, in random order, "
                         "better ten. What separates\n"
@@ -102,15 +147,15 @@ std::string new_experiment_toml(Kind kind, std::size_t runs) {
     return text;
 }
 
-std::string new_csv_header(Kind kind) {
+std::string new_csv_header(const Kind& kind) {
     std::string names = "t_s";
     for (const ColumnInfo& column : columns_of(kind))
-        if (in_header(column) && std::string_view(column.name) != "t_s")
+        if (in_header(kind, column) && std::string_view(column.name) != "t_s")
             names += fmt::format(",{}", column.name);
     return names + "\n";
 }
 
-void write_new_folder(Kind kind, std::size_t runs, const std::filesystem::path& folder) {
+void write_new_folder(const Kind& kind, std::size_t runs, const std::filesystem::path& folder) {
     std::error_code failed;
     for (std::size_t run = 0; run <= runs; ++run) {
         const auto file = folder / (run == runs ? std::filesystem::path("experiment.toml") : run_file(run));
@@ -123,6 +168,8 @@ void write_new_folder(Kind kind, std::size_t runs, const std::filesystem::path& 
                          "a folder that can be written");
     for (std::size_t run = 0; run < runs; ++run)
         write_file(folder / run_file(run), new_csv_header(kind));
+    if (const Description* own = kind.description())
+        write_file(folder / own->file.filename(), read_whole_file(own->file).value_or(""));
     write_file(folder / "experiment.toml", new_experiment_toml(kind, runs));
 }
 

@@ -1,6 +1,6 @@
 #include "gap/clean/clean.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/stats/duplicates.h"
 
 #include <fmt/format.h>
@@ -100,7 +100,7 @@ void drop_copies(Experiment& experiment) {
     const std::vector<std::string> measured = measured_columns(experiment);
     if (measured.empty()) return;
     const bool series = experiment.kind == Kind::Motion || experiment.kind == Kind::Accelerometer ||
-                        experiment.kind == Kind::Timing;
+                        experiment.kind == Kind::Timing || experiment.kind == Kind::Described;
     std::vector<std::set<std::size_t>> gone(experiment.runs.size());
     for (const Copy& copy : copies_in(measured_runs(experiment, measured))) {
         const Run& later = experiment.runs[copy.run_b];

@@ -1,6 +1,6 @@
 #include "gap/clean/clean.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/stats/robust.h"
 
 #include <fmt/format.h>

@@ -7,7 +7,8 @@
 // step, they agree as well.
 
 #include "gap/clean/clean.h"
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
+#include "gap/kinds/description.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,9 +37,11 @@ struct Block {
     bool whole;  ///< the chain goes on at both ends
 };
 
-std::vector<Chain> chains_of(const Run& run) {
+std::vector<Chain> chains_of(const Run& run, const std::string& chain) {
     std::map<double, Chain> by_sensor;
-    const auto& sensor = run.has("sensor") ? run.column("sensor") : run.column("mic");
+    const auto& sensor = !chain.empty()      ? run.column(chain)
+                         : run.has("sensor") ? run.column("sensor")
+                                             : run.column("mic");
     for (std::size_t i = 0; i < run.rows; ++i)
         by_sensor[sensor.empty() || std::isnan(sensor[i]) ? 0.0 : sensor[i]].push_back(i);
     std::vector<Chain> chains;
@@ -59,6 +62,7 @@ std::vector<double> row_of(const Run& run, const std::vector<std::string>& colum
 class Repeats {
   public:
     explicit Repeats(const Experiment& experiment) {
+        if (const Description* own = experiment.kind.description()) chain_ = own->chain;
         for (const ColumnInfo& info : columns_of(experiment.kind)) {
             if (!experiment.has(info.name)) continue;
             // What was read beside it (ambient light, a neighbour) is read anew where the reading is.
@@ -91,7 +95,7 @@ class Repeats {
     std::vector<Block> blocks_of(const Run& run) const {
         std::vector<Block> blocks;
         const auto& time = run.column("t_s");
-        for (const Chain& chain : chains_of(run)) {
+        for (const Chain& chain : chains_of(run, chain_)) {
             const std::size_t first = blocks.size();
             for (std::size_t k = 0; k < chain.size(); ++k) {
                 auto what = row_of(run, set_, chain[k]), reading = row_of(run, readings_, chain[k]);
@@ -140,6 +144,7 @@ class Repeats {
         return sum;
     }
 
+    std::string chain_;  // column of a described kind
     std::vector<std::string> readings_, set_;
     std::vector<Block> blocks_;
 };

@@ -2,10 +2,12 @@
 
 #include "base/suggest.h"
 #include "base/toml_file.h"
-#include "gap/data/columns.h"
 #include "gap/data/csv.h"
 #include "gap/data/problems.h"
 #include "gap/data/wheel_units.h"
+#include "gap/kinds/columns.h"
+#include "gap/kinds/description.h"
+#include "gap/kinds/read_kind.h"
 #include "scenarios/values/reader.h"
 
 #include <fmt/ranges.h>
@@ -82,14 +84,14 @@ void read_conditions(Reader& reader, std::map<std::string, std::string>& conditi
     }
 }
 
-const ColumnInfo& known_column(Reader& reader, Kind kind, const std::string& name) {
+const ColumnInfo& known_column(Reader& reader, const Kind& kind, const std::string& name) {
     if (const ColumnInfo* info = find_column(kind, name)) return *info;
     std::vector<std::string_view> names;
     for (const ColumnInfo& column : columns_of(kind))
         names.emplace_back(column.name);
     reader.fail(
         name, fmt::format("kind {} has no column \"{}\"{}", kind_name(kind), name, did_you_mean(name, names)),
-        "a column of docs/gap.md");
+        kind == Kind::Described ? "a column of its file" : "a column of docs/gap.md");
 }
 
 /// [columns] x_m = { from = "x", unit = "mm" }, or x_m = "mm".
@@ -138,8 +140,18 @@ void read_instruments(const TomlValue& table, Experiment& experiment, const std:
     }
 }
 
+/// What a described kind says of its instruments, where the experiment does not.
+void add_described_instruments(Experiment& experiment) {
+    const Description* own = experiment.kind.description();
+    if (own == nullptr) return;
+    for (const DescribedObservable& one : own->observables)
+        if (const Instrument& ends = one.instrument;
+            !std::isnan(ends.floor) || !std::isnan(ends.ceiling) || ends.quantum > 0)
+            experiment.instruments.emplace(own->columns[one.column].name, ends);
+}
+
 /// A number given for the whole run becomes a column; names of sessions and units become numbers 1, 2, ...
-void read_constants(Reader& reader, Kind kind, const TomlValue& table, Frame& frame, Run& run) {
+void read_constants(Reader& reader, const Kind& kind, const TomlValue& table, Frame& frame, Run& run) {
     for (const ColumnInfo& info : columns_of(kind))
         (void)reader.has(info.name);  // known, for what is suggested in the place of an unknown key
     for (const auto& [key, value] : std::get<TomlTable>(table.data)) {
@@ -168,7 +180,7 @@ bool same_letters(std::string_view a, std::string_view b) {
 
 /// All columns that are not there, in one line; with them what has other capitals, which a caution would name
 /// later.
-void require_columns(Kind kind, const Run& run, const std::vector<std::string>& in_file,
+void require_columns(const Kind& kind, const Run& run, const std::vector<std::string>& in_file,
                      const std::filesystem::path& path, const Frame& frame) {
     const std::vector<std::string_view> names(in_file.begin(), in_file.end());
     std::string missing, capitals;
@@ -318,7 +330,8 @@ Experiment read_folder(const std::filesystem::path& folder, Problems& problems) 
     Reader top(frame.file, "", root);
     Experiment experiment;
     experiment.folder = folder;
-    experiment.kind = kind_named(top.text("kind"), frame.file, fmt::format("line {}", top.line_of("kind")));
+    experiment.kind =
+        kind_stated(top.text("kind"), folder, frame.file, fmt::format("line {}", top.line_of("kind")));
     experiment.title = top.text("title", "");
     if (experiment.title.empty())  // "DIR/" has no file name of its own
         experiment.title = std::filesystem::absolute(folder / "experiment.toml")
@@ -339,6 +352,7 @@ Experiment read_folder(const std::filesystem::path& folder, Problems& problems) 
     if (const TomlValue* table = top.table("nominal"))
         flatten(top, "", std::get<TomlTable>(table->data), experiment.nominal);
     if (const TomlValue* table = top.table("instrument")) read_instruments(*table, experiment, frame.file);
+    add_described_instruments(experiment);
     read_conditions(top, frame.conditions);
     const auto runs = top.tables("run");
     if (runs.empty()) top.fail("run", "no run", "at least one [[run]] with its file");

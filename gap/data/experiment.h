@@ -3,6 +3,8 @@
 // canonical columns in SI units. The format on disk is docs/gap.md; read_experiment() is its only reader.
 
 #include "base/error.h"
+#include "gap/kinds/instrument.h"
+#include "gap/kinds/kind.h"
 #include "gap/stats/series.h"
 
 #include <fmt/format.h>
@@ -18,8 +20,6 @@
 namespace puckloop::gap {
 
 class Problems;
-
-enum class Kind { Proximity, Motion, Rab, Microphone, Ground, Accelerometer, Timing };
 
 /// One run: a table whose columns all have `rows` values; NaN = missing.
 struct Run {
@@ -40,14 +40,6 @@ struct Run {
     bool has(std::string_view name) const { return !column(name).empty(); }
     /// The condition's text, or "".
     std::string condition(const std::string& name) const;
-};
-
-/// What the instrument can say of a column: clip levels and step; NaN / 0 = not known.
-struct Instrument {
-    double floor, ceiling;  ///< values at or beyond are "at least this far"; NaN: none
-    bool at_end(double value) const { return value <= floor || value >= ceiling; }
-    double clipped(double value) const { return value < floor ? floor : value > ceiling ? ceiling : value; }
-    double quantum = 0.0;  ///< step between two values
 };
 
 /// Of a column that [columns] names: where the files have it, in which unit, and its line there.
@@ -98,11 +90,5 @@ struct Experiment {
 /// Reads `folder`/experiment.toml and the CSV files it names and converts units; nothing is judged. Problems
 /// of files and columns go to `problems`; throws InputError where nothing can be read at all.
 Experiment read_folder(const std::filesystem::path& folder, Problems& problems);
-
-std::string_view kind_name(Kind kind);  ///< "proximity", ...
-inline constexpr const char* kKindNames =
-    "proximity, motion, rab, microphone, ground, accelerometer or timing";
-/// InputError at `place` of `file`, with the nearest name.
-Kind kind_named(std::string_view name, std::string_view file, std::string_view place);
 
 }  // namespace puckloop::gap

@@ -1,6 +1,6 @@
 #include "gap/data/wheel_units.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "physics/description/robot_constants.h"
 
 #include <cmath>

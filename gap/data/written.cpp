@@ -1,6 +1,7 @@
 #include "gap/data/written.h"
 
 #include "base/csv.h"
+#include "base/error.h"
 #include "base/text_file.h"
 
 #include <fmt/format.h>
@@ -75,7 +76,8 @@ const WrittenColumn* WrittenRun::find(std::string_view wanted) const {
 }
 
 std::string experiment_toml(const WrittenExperiment& e) {
-    std::string text = fmt::format("kind = {}\n", quoted(e.kind));
+    std::string text =
+        fmt::format("kind = {}\n", quoted(e.kind_file.empty() ? e.kind : e.kind_file.filename().string()));
     const std::pair<const char*, const std::string&> texts[] = {{"title", e.title},
                                                                 {"robot", e.robot},
                                                                 {"description", e.description},
@@ -108,6 +110,13 @@ void write_folder(const WrittenExperiment& experiment, const std::filesystem::pa
         for (const WrittenColumn& column : experiment.runs[k].columns)
             columns.push_back({column.name, column.values});
         write_file(folder / file_of(experiment.runs[k], k), csv_text(columns, digits));
+    }
+    if (!experiment.kind_file.empty()) {
+        const auto text = read_whole_file(experiment.kind_file);
+        if (!text)
+            throw RunError(experiment.kind_file.string() +
+                           ": cannot be read, to be copied beside experiment.toml");
+        write_file(folder / experiment.kind_file.filename(), *text);
     }
     write_file(folder / "experiment.toml", experiment_toml(experiment));
 }

@@ -39,7 +39,8 @@ struct WrittenInstrument {
 };
 
 struct WrittenExperiment {
-    std::string folder;  ///< an importer's: its name under the output
+    std::string folder;                 ///< an importer's: its name under the output
+    std::filesystem::path kind_file{};  ///< of a described kind: copied beside it; `kind` is then its name
     std::string kind, title = "bench test", robot = "e-puck", description, source, licence;
     bool brief = false;                     ///< a short look, too little for a verdict
     std::vector<std::string> assumed;       ///< truth columns that nobody measured

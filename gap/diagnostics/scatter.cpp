@@ -1,6 +1,6 @@
 #include "gap/diagnostics/scatter.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "gap/effects/effect.h"
+#include "gap/kinds/description.h"
 
 #include <algorithm>
 #include <utility>
@@ -8,7 +9,7 @@ namespace puckloop::gap {
 std::span<const Effect> catalogue() {
     static const std::vector<Effect> all = [] {
         std::vector<Effect> effects;
-        const std::pair<Kind, std::vector<Effect> (*)()> tables[] = {
+        const std::pair<Kind::Builtin, std::vector<Effect> (*)()> tables[] = {
             {Kind::Motion, motion_effects},         {Kind::Proximity, proximity_effects},
             {Kind::Ground, ground_effects},         {Kind::Accelerometer, accelerometer_effects},
             {Kind::Microphone, microphone_effects}, {Kind::Rab, rab_effects},
@@ -23,10 +24,15 @@ std::span<const Effect> catalogue() {
     return all;
 }
 
-std::vector<const Effect*> effects_of(Kind kind) {
+std::vector<const Effect*> effects_of(const Kind& kind) {
     std::vector<const Effect*> found;
+    if (const Description* own = kind.description()) {
+        for (const Effect& effect : own->effects)
+            found.push_back(&effect);
+        return found;
+    }
     for (const Effect& effect : catalogue())
-        if (std::find(effect.kinds.begin(), effect.kinds.end(), kind) != effect.kinds.end())
+        if (std::find(effect.kinds.begin(), effect.kinds.end(), Kind::Builtin(kind)) != effect.kinds.end())
             found.push_back(&effect);
     return found;
 }

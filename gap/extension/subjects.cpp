@@ -1,5 +1,7 @@
 #include "gap/extension/subjects.h"
 
+#include "gap/kinds/columns.h"
+#include "gap/kinds/description.h"
 #include "physics/description/extension.h"
 #include "physics/description/robot_constants.h"
 
@@ -41,7 +43,7 @@ constexpr ColumnName kRab[] = {{"distance_m", "distance"},
 constexpr ColumnName kTiming[] = {
     {"t_s", "time"}, {"bytes", "bytes"}, {"i2c_reads", "i2c_reads"}, {"load", "load"}};
 
-std::span<const ColumnName> columns_known(Kind kind) {
+std::span<const ColumnName> columns_known(const Kind& kind) {
     switch (kind) {
     case Kind::Motion:
         return kDrive;
@@ -60,11 +62,12 @@ std::span<const ColumnName> columns_known(Kind kind) {
     }
 }
 
-const char* sensor_column(Kind kind) {
+std::string sensor_column(const Kind& kind) {
+    if (const Description* own = kind.description()) return own->chain;
     return kind == Kind::Microphone ? "mic" : kind == Kind::Rab ? "receiver" : "sensor";
 }
 
-std::string quantity_of(Kind kind, const std::string& observable) {
+std::string quantity_of(const Kind& kind, const std::string& observable) {
     switch (kind) {
     case Kind::Motion:
         return observable == "along"    ? "motion.forward"
@@ -96,6 +99,21 @@ std::vector<double> of_column(const Experiment& experiment, const Observable& ob
         if (observable.row[i] < column.size()) values[i] = column[observable.row[i]];
     }
     return values;
+}
+
+/// What is known of each row, as the world calls it; of a described kind as its user does.
+std::vector<WorldCovariate> known_covariates(const Experiment& experiment, const Observable& observable) {
+    std::vector<WorldCovariate> all;
+    if (experiment.kind == Kind::Described) {
+        for (const ColumnInfo& column : columns_of(experiment.kind))
+            if (column.role != Role::Observable && !column.index)
+                all.push_back({column.name, column.unit, of_column(experiment, observable, column.name)});
+        return all;
+    }
+    for (const ColumnName& one : columns_known(experiment.kind))
+        all.push_back(
+            {one.known, unit_of_known(one.known), of_column(experiment, observable, one.column), one.factor});
+    return all;
 }
 
 /// What the wheels say of each row of a drive.
@@ -165,15 +183,13 @@ std::vector<Subject> subjects_of(const Experiment& experiment, const Model& mode
                                         ? NAN
                                         : observable.y[i] - shown(prediction[o], i));
         if (experiment.kind == Kind::Motion) add_wheels(experiment, wheels, observable, subject);
-        for (const ColumnName& one : columns_known(experiment.kind)) {
-            WorldCovariate covariate{one.known, unit_of_known(one.known),
-                                     of_column(experiment, observable, one.column), one.factor};
+        for (WorldCovariate& covariate : known_covariates(experiment, observable)) {
             wrap(covariate);
             if (usable(covariate)) subject.covariates.push_back(std::move(covariate));
         }
         if (!subject.sums) subject.covariates.push_back({"level", observable.unit, prediction[o].mean, true});
         std::erase_if(subject.covariates, [](const WorldCovariate& one) { return !usable(one); });
-        for (const double one : of_column(experiment, observable, sensor_column(experiment.kind)))
+        for (const double one : of_column(experiment, observable, sensor_column(experiment.kind).c_str()))
             subject.sensor.push_back(std::isfinite(one) ? static_cast<int>(std::lround(one)) : 0);
         subject.sensors = *std::ranges::max_element(subject.sensor) + 1;
         subjects.push_back(std::move(subject));

@@ -1,6 +1,6 @@
 #include "gap/findings/quantities.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 
 #include <fmt/format.h>
 

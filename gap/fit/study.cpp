@@ -1,6 +1,6 @@
 #include "gap/fit/study.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/fit/objective.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/thinned.h"
@@ -41,7 +41,7 @@ bool varies(const Experiment& experiment, std::string_view column) {
 
 /// What was done in a run, roughly: of each column that was set up or is true, whether it is nothing, one
 /// value, or several.
-std::string design_of(Kind kind, const Run& run) {
+std::string design_of(const Kind& kind, const Run& run) {
     std::string design;
     for (const ColumnInfo& info : columns_of(kind)) {
         if (info.role != Role::Stimulus && info.role != Role::Truth) continue;

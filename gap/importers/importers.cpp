@@ -31,7 +31,7 @@ void refuse_edited(const WrittenExperiment& experiment, const std::filesystem::p
 
 const std::vector<Importer>& importers() {
     static const std::vector<Importer> list{kEpuckBoxBearing, kArgosEpuckRab, kThymioSensors, kOptiodom,
-                                            kThymioVicon,     kRohBearing,    kUnifrTiming};
+                                            kThymioVicon,     kRohBearing,    kUnifrTiming,   kDensity};
     return list;
 }
 

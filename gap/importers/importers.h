@@ -37,5 +37,6 @@ extern const Importer kOptiodom;
 extern const Importer kThymioVicon;
 extern const Importer kRohBearing;
 extern const Importer kUnifrTiming;
+extern const Importer kDensity;
 
 }  // namespace puckloop::gap::importers

@@ -34,10 +34,11 @@ void check_finite(const Experiment& experiment, const Model& model) {
 
 std::unique_ptr<Model> make_unchecked(const Experiment& experiment, MotionView view) {
     if (experiment.kind == Kind::Motion) return make_motion_model(experiment, view);
-    static const std::map<Kind, std::unique_ptr<Model> (*)(const Experiment&)> others{
+    static const std::map<Kind::Builtin, std::unique_ptr<Model> (*)(const Experiment&)> others{
         {Kind::Proximity, make_proximity_model},         {Kind::Rab, make_rab_model},
         {Kind::Microphone, make_microphone_model},       {Kind::Ground, make_ground_model},
-        {Kind::Accelerometer, make_accelerometer_model}, {Kind::Timing, make_timing_model}};
+        {Kind::Accelerometer, make_accelerometer_model}, {Kind::Timing, make_timing_model},
+        {Kind::Described, make_described_model}};
     return others.at(experiment.kind)(experiment);
 }
 

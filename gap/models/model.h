@@ -16,13 +16,6 @@
 
 namespace puckloop::gap {
 
-/// How the rows of an observable depend on each other.
-enum class NoiseKind {
-    Carry,  ///< each error keeps a share of the one before (first-order autoregression)
-    Level,  ///< measurement noise on a sum that drifts (random walk plus noise)
-    Event,  ///< happened or not
-};
-
 /// One measured quantity with everything that does not depend on parameters. Rows of one chain (a run, or one
 /// sensor of a run) stand together in order of time.
 struct Observable {
@@ -160,5 +153,7 @@ std::unique_ptr<Model> make_microphone_model(const Experiment& experiment);
 std::unique_ptr<Model> make_ground_model(const Experiment& experiment);
 std::unique_ptr<Model> make_accelerometer_model(const Experiment& experiment);
 std::unique_ptr<Model> make_timing_model(const Experiment& experiment);
+/// Of a kind that its user described.
+std::unique_ptr<Model> make_described_model(const Experiment& experiment);
 
 }  // namespace puckloop::gap

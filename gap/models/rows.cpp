@@ -1,7 +1,7 @@
 #include "gap/models/rows.h"
 
 #include "gap/clean/quantum.h"
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/series.h"
 
@@ -21,7 +21,7 @@ constexpr double kMostSteps = 1e6;  // that one row lies behind another: beyond,
 }  // namespace
 
 Rows::Rows(const Experiment& experiment, std::string_view chain_by,
-           std::initializer_list<std::string_view> needed)
+           const std::vector<std::string_view>& needed)
     : experiment_(experiment) {
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
         const Run& run = experiment.runs[r];

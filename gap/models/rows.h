@@ -16,7 +16,7 @@ class Rows {
   public:
     /// `chain_by` may be "" (a run is a chain).
     Rows(const Experiment& experiment, std::string_view chain_by,
-         std::initializer_list<std::string_view> needed);
+         const std::vector<std::string_view>& needed);
 
     std::size_t size() const { return run_.size(); }
     /// The column in these rows; `fallback` where it is missing.

@@ -3,7 +3,7 @@
 // passes over it.
 
 #include "gap/overlay/overlay.h"
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/overlay/overlay_parts.h"
 #include "physics/description/parameters.h"
 #include "scenarios/tables/world_tables.h"

@@ -5,6 +5,7 @@
 #include "gap/evidence/thresholds.h"
 #include "gap/extension/extend.h"
 #include "gap/fit/intervals.h"
+#include "gap/kinds/description.h"
 #include "gap/next_experiment/suggest.h"
 #include "gap/overlay/overlay_parts.h"
 #include "gap/pipeline/weigh.h"
@@ -128,6 +129,16 @@ void add_mistaken(const Study& study, const Judged& judged, Verdict& verdict) {
             verdict.cautions.push_back(fmt::format("{}: {}", effect_of(study, effect).name, mistaken));
 }
 
+/// What no run can take, once for all of it.
+void add_without_place(const Study& study, Verdict& verdict) {
+    const Description* own = study.experiment().kind.description();
+    if (own == nullptr || verdict.causes.empty()) return;
+    verdict.cautions.push_back(
+        fmt::format("the simulator has no {}: overlay.toml keeps what is named under [measurement], which a "
+                    "run passes over; put the values into [nominal], or into {}",
+                    own->name, own->file.filename().string()));
+}
+
 void add_tried(const Study& study, const Selection& selection, Verdict& verdict) {
     for (const Trial& trial : selection.trials) {
         const Effect& own = effect_of(study, trial.effect);
@@ -219,6 +230,7 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
                                     judged.refused_forms);
     add_causes(study, judged, verdict);
     add_mistaken(study, judged, verdict);
+    add_without_place(study, verdict);
     verdict.series = std::move(judged.diagnosis.series);
     verdict.leftovers = std::move(judged.diagnosis.leftovers);
     verdict.free_forms = std::move(judged.diagnosis.free_forms);

@@ -1,5 +1,8 @@
 #include "gap/residuals/main_covariates.h"
 
+#include "gap/kinds/columns.h"
+#include "gap/residuals/residual_structure.h"
+
 #include <fmt/format.h>
 
 #include <map>
@@ -14,9 +17,9 @@ using stats::Covariate;
 constexpr std::size_t kMost = 3;
 
 /// In the order of importance.
-const std::vector<std::string>& wanted(Kind kind, const std::string& observable) {
+std::vector<std::string> wanted(const Kind& kind, const std::string& observable) {
     static const std::vector<std::string> kBearing{"true bearing", "distance", "receiver"};
-    static const std::map<Kind, std::vector<std::string>> kOfKind{
+    static const std::map<Kind::Builtin, std::vector<std::string>> kOfKind{
         {Kind::Proximity, {"distance", "angle", "sensor"}},
         {Kind::Rab, {"distance", "true bearing", "senders"}},
         {Kind::Microphone, {"distance", "angle", "mic"}},
@@ -24,6 +27,13 @@ const std::vector<std::string>& wanted(Kind kind, const std::string& observable)
         {Kind::Accelerometer, {"time", "pitch", "roll"}},
         {Kind::Timing, {"seq", "bytes", "load"}},
         {Kind::Motion, {"distance so far", "wheel speed", "turn rate", "time"}}};
+    if (kind == Kind::Described) {  // what its user put first, what is true before what was set up
+        std::vector<std::string> names;
+        for (const Role role : {Role::Truth, Role::Stimulus, Role::Covariate})
+            for (const ColumnInfo& column : columns_of(kind))
+                if (column.role == role) names.push_back(plain_name(column.name));
+        return names;
+    }
     return observable == "bearing" ? kBearing : kOfKind.at(kind);
 }
 

@@ -1,6 +1,6 @@
 #include "gap/residuals/residual_structure.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/stats/series.h"
 
 #include <algorithm>
@@ -128,6 +128,8 @@ void add_derived(const Experiment& experiment, const Series& series, std::vector
     add("distance so far", CovariateKind::Number, &Derived::travelled);
 }
 
+}  // namespace
+
 std::string plain_name(std::string name) {
     if (name == "t_s") return "time";
     for (const std::string_view unit : {"_m", "_rad", "_s", "_c", "_v", "_kg"})
@@ -138,8 +140,6 @@ std::string plain_name(std::string name) {
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
 }
-
-}  // namespace
 
 const std::vector<double>& simulated(const Series& series, Stage stage) {
     return stage == Stage::Before ? series.before : series.after;
@@ -164,9 +164,9 @@ std::vector<Covariate> covariates_of(const Experiment& experiment, const Series&
         const std::string_view name = info.name;
         if (info.role == Role::Observable || kNotByThemselves.contains(name) || !experiment.has(name))
             continue;
-        const CovariateKind kind = kLabels.contains(name)   ? CovariateKind::Label
-                                   : kSigned.contains(name) ? CovariateKind::Signed
-                                                            : CovariateKind::Number;
+        const CovariateKind kind = kLabels.contains(name) || info.index ? CovariateKind::Label
+                                   : kSigned.contains(name)             ? CovariateKind::Signed
+                                                                        : CovariateKind::Number;
         Covariate c{plain_name(info.name), kind, of_column(experiment, series, name), {}};
         if (experiment.kind == Kind::Motion && name == kMeasuredHeading)
             c.value = in_sectors(c.value, series.run);

@@ -23,6 +23,9 @@ std::vector<double> residual_of(const Series& series, Stage stage);
 /// A covariate a row of the series; only those that vary.
 std::vector<stats::Covariate> covariates_of(const Experiment& experiment, const Series& series);
 
+/// A column's name as reports have it: "distance" for "distance_m".
+std::string plain_name(std::string name);
+
 /// Time a row (t_s or the kind's clock); row numbers where there is none.
 std::vector<double> times_of(const Experiment& experiment, const Series& series);
 

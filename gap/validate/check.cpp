@@ -1,7 +1,7 @@
 #include "gap/validate/checks.h"
 
 #include "gap/clean/clean.h"
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/data/problems.h"
 #include "gap/stats/robust.h"
 #include "gap/validate/units.h"
@@ -64,7 +64,7 @@ void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
 bool is_index(const ColumnInfo& info) {
     static const std::set<std::string_view> names{"sensor", "mic",     "receiver", "emitter",
                                                   "object", "senders", "window"};
-    return names.contains(info.name);
+    return info.index || names.contains(info.name);
 }
 
 void check_index(const Experiment& experiment, const Run& run, const ColumnInfo& info) {

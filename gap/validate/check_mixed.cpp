@@ -1,6 +1,6 @@
 #include "gap/validate/checks.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/robust.h"
 

@@ -1,6 +1,6 @@
 #include "gap/validate/checks.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "physics/description/parameters.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "gap/validate/placements.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/residuals/residual_structure.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/profile.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Numbers that a quantity can have, but hardly has in this unit: metres taken for millimetres or the reverse.
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/data/experiment.h"
 
 #include <cmath>

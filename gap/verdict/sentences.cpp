@@ -1,6 +1,6 @@
 #include "gap/verdict/sentences.h"
 
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "gap/stats/profile.h"
 
 #include <fmt/format.h>

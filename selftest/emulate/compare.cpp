@@ -162,7 +162,7 @@ void compare_reading(double reading, const std::vector<double>& performed, const
         distribution.performed(value - expected, 1.0 / static_cast<double>(performed.size()));
 }
 
-std::vector<std::pair<const char*, const char*>> compared(Kind kind) {
+std::vector<std::pair<const char*, const char*>> compared(const Kind& kind) {
     switch (kind) {
     case Kind::Motion:
         return {{"position", "m"},

@@ -38,7 +38,7 @@ struct Performed {
 
 /// Names and units of what is compared, in the order of Comparisons: what is compared row by row, then the
 /// distributions of what chance puts elsewhere each time.
-std::vector<std::pair<const char*, const char*>> compared(Kind kind);
+std::vector<std::pair<const char*, const char*>> compared(const Kind& kind);
 
 /// Adds what was measured and what was performed. `plain`: the simulator as it is, which distributions are
 /// taken about.

@@ -1,8 +1,10 @@
 // puckloop gap new, puckloop gap check: a folder to be filled, and whether it is ready.
 
 #include "base/error.h"
+#include "base/shipped_files.h"
 #include "gap/begin/new_folder.h"
 #include "gap/begin/readiness.h"
+#include "gap/kinds/read_kind.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/gap/subcommands.h"
@@ -27,8 +29,20 @@ struct Fresh {
     std::uint64_t runs = 6;
 };
 
+}  // namespace
+
+gap::Kind kind_asked(const std::string& text) {
+    std::error_code failed;
+    if (gap::names_kind_file(text) && !std::filesystem::exists(text, failed))
+        if (const auto shipped = shipped_file("scenarios/kinds/" + text); !shipped.empty())
+            return gap::read_kind(shipped);
+    return gap::kind_stated(text, "", "", "gap new");
+}
+
+namespace {
+
 void make_folder(const Fresh& fresh) {
-    const gap::Kind kind = gap::kind_named(fresh.kind, "", "gap new");
+    const gap::Kind kind = kind_asked(fresh.kind);
     if (fresh.runs == 0) throw InputError("", "--runs", "is 0", "1 or more");
     gap::write_new_folder(kind, fresh.runs, fresh.folder);
     fmt::print(

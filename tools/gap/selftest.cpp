@@ -1,6 +1,8 @@
 // puckloop gap selftest: does the tool find what was hidden?
 
 #include "base/error.h"
+#include "gap/kinds/read_kind.h"
+#include "selftest/described/described.h"
 #include "selftest/emulate/secret_cases.h"
 #include "selftest/run_cases.h"
 #include "tools/cli/check.h"
@@ -22,6 +24,7 @@ namespace st = gap::selftest;
 
 constexpr std::size_t kQuick = 24;
 constexpr std::size_t kDrawn = 56, kAllDrawn = 1120;  // two and forty of each kind and class
+constexpr std::size_t kDescribed = 60, kQuickDescribed = 6;
 constexpr std::uint64_t kMostCases = 100'000;
 constexpr double kMostWorkers = 256;
 
@@ -97,7 +100,34 @@ int secret_test(const SelftestRequest& request) {
     return std::all_of(results.begin(), results.end(), [](const auto& r) { return r.found; }) ? 0 : 1;
 }
 
+/// A kind that its user described, by its own formulas.
+int described_self_test(const SelftestRequest& request) {
+    const std::pair<const char*, bool> others[] = {{"--grammar", request.grammar},
+                                                   {"--emulator", request.emulator},
+                                                   {"--json", request.json},
+                                                   {"--case", !request.only.empty()}};
+    for (const auto& [option, given] : others)
+        if (given) throw InputError("", option, "is not for the file of a kind", "--kind FILE alone");
+    const gap::Kind kind = kind_asked(request.kind);
+    st::DescribedTest test;
+    test.cases = request.cases > 0 ? request.cases : request.quick ? kQuickDescribed : kDescribed;
+    test.seed = request.seed_given ? request.seed : fresh_seed();
+    test.workers = request.workers;
+    test.keep = request.keep;
+    test.scratch = scratch_of(request);
+    for (std::size_t k = 0; k < test.cases; ++k)
+        refuse_foreign_files(test.scratch / fmt::format("case{:03}", k));
+    test.done = [&](const st::DescribedCase& one, std::size_t done) {
+        fmt::print(stderr, "{:>3}/{} {}\n", done, test.cases, st::described_line(one));
+    };
+    const auto cases = st::described_test(kind, test);
+    if (request.scratch.empty() && !request.keep) std::filesystem::remove_all(test.scratch);
+    fmt::print("{}", st::described_text(cases, test));
+    return st::described_met(cases) ? 0 : 1;
+}
+
 int self_test(const SelftestRequest& request) {
+    if (gap::names_kind_file(request.kind)) return described_self_test(request);
     const std::pair<const char*, bool> drawn[] = {
         {"--svg", !request.svg.empty()},    {"--full", request.full},
         {"--class", !request.of.empty()},   {"--pool", !request.pool.empty()},
@@ -189,7 +219,11 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_option("--seed", request->seed, "of everything made up")
         ->check(count_up_to(kLargestSeed))
         ->type_name("N");
-    command->add_option("--kind", request->kind, "cases of this kind only")->type_name("KIND");
+    command
+        ->add_option("--kind", request->kind,
+                     "cases of this kind only; the file of a kind of your own (NAME.toml): cases "
+                     "drawn from its formulas")
+        ->type_name("KIND");
     command->add_option("--case", request->only, "the case of this number only (may be repeated)")
         ->check(count_up_to(kMostCases))
         ->type_name("N");

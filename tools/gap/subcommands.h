@@ -1,6 +1,7 @@
 #pragma once
 // `puckloop gap` and its subcommands, each in a file of its own.
 
+#include "gap/kinds/kind.h"
 #include "selftest/emulate/stage.h"
 
 #include <cstdint>
@@ -11,6 +12,10 @@
 namespace puckloop::tools {
 
 class Command;
+
+/// A built-in kind, one from a file, or from a file of scenarios/kinds that comes with the program.
+/// InputError for what is none.
+gap::Kind kind_asked(const std::string& text);
 
 void declare_gap(Command& app, int& status);
 void declare_gap_check(Command& gap, int& status);

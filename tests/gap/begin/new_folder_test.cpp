@@ -2,7 +2,7 @@
 
 #include "gap/begin/new_folder.h"
 #include "gap/begin/readiness.h"
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>
@@ -13,7 +13,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr Kind kKinds[] = {Kind::Proximity, Kind::Motion,        Kind::Rab,   Kind::Microphone,
+constexpr Kind::Builtin kKinds[] = {Kind::Proximity, Kind::Motion,        Kind::Rab,   Kind::Microphone,
                            Kind::Ground,    Kind::Accelerometer, Kind::Timing};
 
 }  // namespace

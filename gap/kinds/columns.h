@@ -1,7 +1,7 @@
 #pragma once
 // The canonical columns of each kind of experiment: names, units, what they are for, what is plausible.
 
-#include "gap/data/experiment.h"
+#include "gap/kinds/kind.h"
 
 #include <cmath>
 #include <optional>
@@ -27,12 +27,17 @@ struct ColumnInfo {
     double low, high;  ///< plausible values; outside them a unit or a column is wrong
     const char* meaning;
     double usual_low = 0.0, usual_high = INFINITY;  ///< of its largest sizes; `t_s`: of the step between rows
+    bool index = false;  ///< of a described kind: numbers things (sensors, objects); whole
 };
 
 /// Columns of one kind, its own first, then those common to all kinds.
-std::span<const ColumnInfo> columns_of(Kind kind);
+/// The kind must outlive what is returned, where it is a described one.
+std::span<const ColumnInfo> columns_of(const Kind& kind);
 /// nullptr if the kind has no such column.
-const ColumnInfo* find_column(Kind kind, std::string_view name);
+const ColumnInfo* find_column(const Kind& kind, std::string_view name);
+
+/// Those common to all kinds.
+std::span<const ColumnInfo> common_columns();
 
 /// " counts", " per kg"; "" for pure numbers.
 std::string unit_suffix(std::string_view unit);
@@ -43,6 +48,9 @@ struct ToSi {
 };
 /// From `unit` to the SI unit `si`; nothing if they do not measure the same thing or one is unknown.
 std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si);
+
+/// Is it a unit that columns can be turned into? Of others nothing is known.
+bool is_column_unit(std::string_view si);
 
 /// The names of all units that are turned into `si`.
 std::vector<std::string_view> unit_names(std::string_view si);

@@ -1,8 +1,9 @@
-#include "gap/data/columns.h"
+#include "gap/kinds/columns.h"
 
 #include "base/enum_names.h"
 #include "base/error.h"
 #include "base/suggest.h"
+#include "gap/kinds/description.h"
 
 #include <fmt/format.h>
 
@@ -143,6 +144,14 @@ const std::map<std::string_view, std::vector<UnitInfo>> kUnits{
     {"m/s2", {{"m/s2", {1}}, {"g", {9.80665}}, {"mm/s2", {1e-3}}}},
     {"kg", {{"kg", {1}}, {"gram", {1e-3}}}},
     {"1/m", {{"1/m", {1}}, {"1/mm", {1e3}}, {"1/cm", {100}}}},
+    {"rad/s", {{"rad/s", {1}}, {"deg/s", {kDegree}}, {"rpm", {2 * std::numbers::pi / 60}}}},
+    {"A", {{"A", {1}}, {"mA", {1e-3}}, {"uA", {1e-6}}}},
+    {"ohm", {{"ohm", {1}}, {"kohm", {1e3}}}},
+    {"W", {{"W", {1}}, {"mW", {1e-3}}}},
+    {"N", {{"N", {1}}, {"mN", {1e-3}}}},
+    {"Pa", {{"Pa", {1}}, {"hPa", {100}}, {"kPa", {1e3}}, {"bar", {1e5}}}},
+    {"T", {{"T", {1}}, {"mT", {1e-3}}, {"uT", {1e-6}}}},
+    {"lx", {{"lx", {1}}}},
     {"counts", {{"counts", {1}}}},
     {"1", {{"1", {1}}, {"%", {0.01}}, {"steps", {1}}, {"", {1}}}},
 };
@@ -160,17 +169,26 @@ constexpr std::array<std::string_view, 7> kNames{"proximity", "motion",        "
 
 }  // namespace
 
-std::span<const ColumnInfo> columns_of(Kind kind) {
+std::span<const ColumnInfo> columns_of(const Kind& kind) {
     static const std::array<std::vector<ColumnInfo>, 7> tables{
         with_common(kProximity), with_common(kMotion),        with_common(kRab),   with_common(kMicrophone),
         with_common(kGround),    with_common(kAccelerometer), with_common(kTiming)};
-    return tables[static_cast<std::size_t>(kind)];
+    if (const Description* own = kind.description()) return own->columns;
+    return tables.at(kind);
 }
 
-const ColumnInfo* find_column(Kind kind, std::string_view name) {
+std::span<const ColumnInfo> common_columns() {
+    return kCommon;
+}
+
+const ColumnInfo* find_column(const Kind& kind, std::string_view name) {
     for (const ColumnInfo& column : columns_of(kind))
         if (column.name == name) return &column;
     return nullptr;
+}
+
+bool is_column_unit(std::string_view si) {
+    return kUnits.contains(si);
 }
 
 std::optional<ToSi> unit_to_si(std::string_view unit, std::string_view si) {
@@ -192,12 +210,17 @@ std::vector<std::string_view> unit_names(std::string_view si) {
     return names;
 }
 
-std::string_view kind_name(Kind kind) {
-    return kNames[static_cast<std::size_t>(kind)];
+std::string_view kind_name(const Kind& kind) {
+    if (const Description* own = kind.description()) return own->name;
+    return kNames.at(kind);
+}
+
+bool is_builtin_kind(std::string_view name) {
+    return value_named<Kind::Builtin>(kNames, name).has_value();
 }
 
 Kind kind_named(std::string_view name, std::string_view file, std::string_view place) {
-    if (const auto kind = value_named<Kind>(kNames, name)) return *kind;
+    if (const auto kind = value_named<Kind::Builtin>(kNames, name)) return *kind;
     throw InputError(
         file, place,
         fmt::format("unknown kind \"{}\"{}", name, did_you_mean(name, {kNames.begin(), kNames.end()})),
