@@ -65,7 +65,7 @@ std::vector<Message> run_sampling(RandomStream& random, rab::RabNode& node, std:
         std::copy_if(inbox.begin(), inbox.end(), std::back_inserter(now), [&](const Message& message) {
             return message.time < until && (message.port != rab::RabNode::kIr || message.time < known);
         });
-        reached = node.advance_sampling(until, known, now, outbox);
+        reached = node.advance_sampling({until, known, until}, now, outbox);
         REQUIRE(reached == node.granted());
         if (reached < until) REQUIRE(reached >= known);
         sampled.ahead += reached > known ? 1 : 0;
