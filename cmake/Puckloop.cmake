@@ -78,9 +78,23 @@ if(PUCKLOOP_UNITY)
   set(product $<NOT:$<BOOL:$<TARGET_PROPERTY:PUCKLOOP_IS_TEST>>>)
   target_compile_options(puckloop_options INTERFACE $<$<AND:$<CXX_COMPILER_ID:GNU>,${product}>:-Wno-subobject-linkage>)
 endif()
-set(PUCKLOOP_UNITY_SOURCES 8)
+set(PUCKLOOP_UNITY_SOURCES 16)
 function(puckloop_unity name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${PUCKLOOP_UNITY} UNITY_BUILD_BATCH_SIZE ${PUCKLOOP_UNITY_SOURCES})
+endfunction()
+
+# The same with a folder's sources as one: file-level names of a folder must differ, and no more. ALONE are files, and
+# folders of them, that are compiled by themselves.
+function(puckloop_unity_by_folder name)
+  cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
+  get_target_property(sources ${name} SOURCES)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} DIRECTORY)
+    if(NOT IS_ABSOLUTE ${source} AND NOT folder IN_LIST ARG_ALONE AND NOT source IN_LIST ARG_ALONE)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${folder}")
+    endif()
+  endforeach()
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${PUCKLOOP_UNITY} UNITY_BUILD_MODE GROUP)
 endfunction()
 
 # What reads input, writes reports or is a command, but carries out no node's time: optimising it less costs nobody, and saves

@@ -131,7 +131,11 @@ void Conductor::State::take_changes() {
     for (const Change& change : changes_) {
         Slot& slot = slots_[change.to];
         NodeTimes& node = times_[change.to];
-        if (change.time < slot.asked) too_late(change.from, change.to, change.time);
+        if (change.time < slot.asked) {
+            // What it only looks at is shown to it once it is final.
+            if (!slot.before_look) too_late(change.from, change.to, change.time);
+            continue;
+        }
         slot.stale = true;
         if (!node.busy) {
             if (change.time < node.ahead) surprise(change.from, change.to, change.time);

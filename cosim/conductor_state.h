@@ -66,7 +66,8 @@ class Conductor::State {
         std::vector<TraceRecord> taken;  ///< what comes in, for the grant under way
         std::vector<Message> inbox;      ///< the same, as the node gets it
         std::vector<TraceRecord> left;   ///< what it did not take
-        Time known = kNever;             ///< of a node with SampledInputs: what comes in there, before this
+        Time known = kNever;             ///< of a node with SampledInputs: SampledReach
+        Time answered = kNever;          ///< the same
         std::vector<PortEcho> echoes;
         bool before_look = false;  ///< left windows ahead of what it looks at (SampledInputs)
         bool stop_seen = false;
@@ -115,7 +116,8 @@ class Conductor::State {
     void chop(std::size_t n, Time& until, Time& ahead);
     // conductor_windows.cpp
     void loop_in_windows();
-    std::vector<bool> sampled_channels() const;
+    std::vector<Windows::Sampling> sampled_channels() const;
+    void find_pending();
     void show_sampled();
     void show_sampled(const TraceRecord& record);
     void leave_windows();
@@ -173,7 +175,7 @@ class Conductor::State {
 
     std::vector<NodeTimes> times_;
     std::vector<Slot> slots_;
-    std::vector<Time> pending_;
+    std::vector<Time> pending_, acting_;
     Schedule schedule_;
     Windows windows_;
     std::vector<std::size_t> shares_;  ///< nodes of a window that any thread may advance

@@ -17,12 +17,12 @@ constexpr std::size_t kWorthSharingNodes = 4;
 
 void Conductor::State::loop_in_windows() {
     pending_.resize(slots_.size());
+    acting_.resize(slots_.size());
     windows_.connect(network_->channels(), sampled_channels(), slots_.size());
     while (true) {
         take_interrupt();
-        for (std::size_t n = 0; n < slots_.size(); ++n)
-            pending_[n] = slots_[n].queue.empty() ? kNever : slots_[n].queue.front().time;
-        windows_.plan(pending_, times_, limits());
+        find_pending();
+        windows_.plan(pending_, acting_, times_, limits());
         if (windows_.complete()) return show_sampled();
         if (windows_.chosen().empty()) return leave_windows();
         window();
@@ -35,14 +35,29 @@ void Conductor::State::loop_in_windows() {
     }
 }
 
-/// Of the channels, those at which the receiver only looks (SampledInputs).
-std::vector<bool> Conductor::State::sampled_channels() const {
-    std::vector<bool> sampled(network_->channels().size());
+/// The first message for each node, and the first that it does not sample.
+void Conductor::State::find_pending() {
+    for (std::size_t n = 0; n < slots_.size(); ++n) {
+        const std::vector<TraceRecord>& queue = slots_[n].queue;
+        pending_[n] = acting_[n] = queue.empty() ? kNever : queue.front().time;
+        if (queue.empty() || !handles_[n]->samples()) continue;
+        acting_[n] = kNever;
+        for (const TraceRecord& record : queue)
+            if (record.time < acting_[n] && !handles_[n]->samples(network_->wire(record).to_port))
+                acting_[n] = record.time;
+    }
+}
+
+/// Of each channel, what its ends state as SampledInputs.
+std::vector<Windows::Sampling> Conductor::State::sampled_channels() const {
+    std::vector<Windows::Sampling> sampling(network_->channels().size());
     for (std::size_t w = 0; w < network_->wire_count(); ++w) {
         const Wire& wire = network_->wires()[w];
-        sampled[w] = handles_[wire.to]->samples(wire.to_port);
+        const NodeHandle& to = *handles_[wire.to];
+        sampling[w] = {to.samples(wire.to_port), handles_[wire.from]->independent(wire.from_port),
+                       to.turn_port() == wire.to_port};
     }
-    return sampled;
+    return sampling;
 }
 
 /// Nodes take in what came from before where they are, and they have not looked at.
@@ -50,7 +65,7 @@ void Conductor::State::show_sampled() {
     for (std::size_t n = 0; n < slots_.size(); ++n) {
         Slot& slot = slots_[n];
         if (slot.queue.empty() || slot.queue.front().time >= times_[n].granted) continue;
-        slot.asked = slot.known = times_[n].granted;
+        slot.asked = slot.known = slot.answered = times_[n].granted;
         advance_sampling(n);
     }
 }
@@ -60,7 +75,7 @@ void Conductor::State::show_sampled(const TraceRecord& record) {
     const Wire& wire = network_->wire(record);
     Slot& slot = slots_[wire.to];
     slot.inbox.assign(1, {record.time, wire.to_port, record.payload});
-    handles_[wire.to]->advance_sampling(slot.asked, slot.asked, slot.inbox);
+    handles_[wire.to]->advance_sampling({slot.asked, slot.asked, slot.asked}, slot.inbox);
 }
 
 /// All wait for each other, as far as a plain grant goes. A node that hands something out at T and answers
@@ -71,7 +86,8 @@ void Conductor::State::leave_windows() {
     show_sampled();
     for (std::size_t n = 0; n < slots_.size(); ++n) {
         slots_[n].stale = true;
-        slots_[n].before_look = handles_[n]->samples() && windows_.known(n) < times_[n].granted;
+        slots_[n].before_look =
+            handles_[n]->samples() && std::min(windows_.known(n), windows_.answered(n)) < times_[n].granted;
         times_[n].runs_ahead = may_run_ahead(n);
         times_[n].horizon = handles_[n]->state().horizon;
     }
@@ -82,11 +98,12 @@ void Conductor::State::window() {
     shares_.clear();
     const std::vector<Windows::Step>& steps = windows_.chosen();
     // Programs compute in processes of their own meanwhile.
-    for (const auto& [n, to, known] : steps) {
+    for (const auto& [n, to, known, answered] : steps) {
         Time until = to, ahead = to;
         if (chop_) chop(n, until, ahead);
         slots_[n].asked = slots_[n].asked_ahead = until;
         slots_[n].known = known;
+        slots_[n].answered = answered;
         ++grants_;
         ++slots_[n].grants;
         if (specs_[n].any_thread) {
@@ -97,8 +114,9 @@ void Conductor::State::window() {
         if (!advance_in_window(n)) suspended_.push_back(n);
     }
     share_window();
-    for (const auto& [n, to, known] : steps)
-        if (std::find(suspended_.begin(), suspended_.end(), n) == suspended_.end()) take_window(n);
+    for (const Windows::Step& step : steps)
+        if (std::find(suspended_.begin(), suspended_.end(), step.node) == suspended_.end())
+            take_window(step.node);
     resume_in_window();
 }
 
@@ -165,7 +183,7 @@ void Conductor::State::advance_sampling(std::size_t n) {
         slot.inbox.push_back({record.time, port, record.payload});
         slot.taken.push_back(record);
     });
-    node.advance_sampling(slot.asked, slot.known, slot.inbox);
+    node.advance_sampling({slot.asked, slot.known, slot.answered}, slot.inbox);
     for (; !slot.taken.empty() && slot.taken.back().time >= node.reached(); slot.taken.pop_back())
         slot.left.push_back(slot.taken.back());
     for (const TraceRecord& record : slot.left) {
@@ -195,6 +213,7 @@ void Conductor::State::take_window(std::size_t n) {
                          slot.inbox.empty() ? kNever : slot.inbox.front().time, deliveries_, changes_);
     windows_.update(n, network_->channels());
     windows_.note_look(n, reached < slot.asked);
+    windows_.note_turn(n, handles_[n]->has_turn());
     slot.asked = slot.asked_ahead = reached;
     times_[n].granted = times_[n].ahead = reached;
     take_deliveries(n);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace puckloop::cosim {
@@ -39,9 +40,7 @@ class LocalNode : public NodeHandle {
         node_ = std::make_unique<RunAhead>(std::move(node));
         node_->read_state(state_);
         has_state_ = node_->has_state();
-        if (const SampledInputs* sampling = node_->sampling())
-            for (std::size_t port = 0; port < ports_.size(); ++port)
-                sampled_.push_back(sampling->sampled(static_cast<PortIndex>(port)));
+        if (node_->sampling()) read_sampling(*node_->sampling());
     }
 
     void await_ready() override {}
@@ -72,9 +71,10 @@ class LocalNode : public NodeHandle {
         return true;
     }
 
-    void advance_sampling(Time until, Time known, const std::vector<Message>& inbox) override {
-        guarded("stopped", [&] { node_->advance_sampling(until, known, inbox, outbox_); });
+    void advance_sampling(const SampledReach& reach, const std::vector<Message>& inbox) override {
+        guarded("stopped", [&] { node_->advance_sampling(reach, inbox, outbox_); });
         read_linked();
+        if (turn_port_) has_turn_ = node_->sampling()->has_turn();
     }
 
     void wind_up(int signal) override {
@@ -104,6 +104,15 @@ class LocalNode : public NodeHandle {
     }
 
   private:
+    void read_sampling(const SampledInputs& sampling) {
+        turn_port_ = sampling.turn_port();
+        for (std::size_t port = 0; port < ports_.size(); ++port) {
+            sampled_.push_back(sampling.sampled(static_cast<PortIndex>(port)));
+            independent_.push_back(sampling.independent(static_cast<PortIndex>(port)));
+        }
+        if (!turn_port_ && std::find(sampled_.begin(), sampled_.end(), true) == sampled_.end())
+            sampled_.clear();
+    }
     /// After the node went straight to where it now is.
     void read_linked() {
         const Node& node = node_->node();

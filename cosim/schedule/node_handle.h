@@ -3,6 +3,7 @@
 
 #include "cosim/core/message.h"
 #include "cosim/core/node.h"
+#include "cosim/core/sampled_inputs.h"
 #include "cosim/core/time.h"
 #include "cosim/core/work_counts.h"
 #include "cosim/schedule/stride.h"
@@ -85,11 +86,16 @@ class NodeHandle {
         grant({until, until, until}, inbox, {});
         return poll(false);
     }
-    /// The node only looks at what some ports bring (SampledInputs); and it does at what this one brings.
+    /// The node is to be advanced by advance_sampling(); and it only looks at what this port brings.
     bool samples() const { return !sampled_.empty(); }
     bool samples(PortIndex port) const { return port < sampled_.size() && sampled_[port]; }
+    /// What leaves by this port does not depend on them (SampledInputs::independent()).
+    bool independent(PortIndex port) const { return port < independent_.size() && independent_[port]; }
     /// As advance(), of such a node; advanced() gives how far it came (SampledInputs::advance_sampling()).
-    virtual void advance_sampling(Time /*until*/, Time /*known*/, const std::vector<Message>& /*inbox*/) {}
+    virtual void advance_sampling(const SampledReach& /*reach*/, const std::vector<Message>& /*inbox*/) {}
+    /// SampledInputs::turn_port(), and whether it has the turn as of the last advance.
+    std::optional<PortIndex> turn_port() const { return turn_port_; }
+    bool has_turn() const { return has_turn_; }
     /// The ports that lead somewhere.
     void set_linked(std::vector<PortIndex> ports) { linked_ = std::move(ports); }
     /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
@@ -118,6 +124,9 @@ class NodeHandle {
     Advanced advanced_;
     bool has_state_ = false;
     std::vector<bool> sampled_;  ///< by port; empty: none is
+    std::vector<bool> independent_;
+    std::optional<PortIndex> turn_port_;
+    bool has_turn_ = false;
 };
 
 /// A node in this process.

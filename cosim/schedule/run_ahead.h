@@ -62,11 +62,11 @@ class RunAhead {
 
     /// The same for a node that only looks at some inputs, to where it comes.
     const SampledInputs* sampling() const { return sampling_; }
-    void advance_sampling(Time until, Time known, std::span<const Message> inbox,
+    void advance_sampling(const SampledReach& reach, std::span<const Message> inbox,
                           std::vector<Message>& outbox) {
         outbox.clear();
         const Time before = reached_;
-        reached_ = ahead_ = sampling_->advance_sampling(until, known, inbox, outbox);
+        reached_ = ahead_ = sampling_->advance_sampling(reach, inbox, outbox);
         note_advance(before, reached_, inbox.size());
     }
 

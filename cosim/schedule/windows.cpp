@@ -5,17 +5,18 @@
 
 namespace puckloop::cosim {
 
-void Windows::connect(const std::vector<Channel>& channels, const std::vector<bool>& sampled,
+void Windows::connect(const std::vector<Channel>& channels, const std::vector<Sampling>& sampling,
                       std::size_t nodes) {
     edges_.clear();
     looks_.assign(nodes, false);
+    turn_.assign(nodes, false);
     first_.clear();
     for (std::size_t n = 0; n < nodes; ++n) {
         first_.push_back(edges_.size());
         for (std::size_t c = 0; c < channels.size(); ++c)
             if (channels[c].from == n)
                 edges_.push_back(
-                    {static_cast<std::uint32_t>(channels[c].to), sampled[c], static_cast<std::uint32_t>(c)});
+                    {static_cast<std::uint32_t>(channels[c].to), sampling[c], static_cast<std::uint32_t>(c)});
     }
     first_.push_back(edges_.size());
     base_.resize(nodes);
@@ -39,39 +40,52 @@ void Windows::update(std::size_t n, const std::vector<Channel>& channels) {
     lookahead_[n] = lookahead;
 }
 
-void Windows::plan(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes,
-                   const ScheduleLimits& limits) {
+void Windows::plan(const std::vector<Time>& pending, const std::vector<Time>& acting,
+                   const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
     reached_ = limits.end;
     for (const NodeTimes& node : nodes)
         reached_ = std::min(reached_, node.granted);
     complete_ = reached_ >= limits.end;
     chosen_.clear();
-    find_earliest(pending, nodes);
+    find_earliest(pending, acting, nodes);
     find_limits();
     if (!complete_) choose(pending, nodes, limits);
 }
 
 /// The first instant at which something reaches each node: from EOTs and what is pending along the shortest
 /// ways. Begun with the earliest, hardly a node comes twice.
-void Windows::find_earliest(const std::vector<Time>& pending, const std::vector<NodeTimes>& nodes) {
+void Windows::find_earliest(const std::vector<Time>& pending, const std::vector<Time>& acting,
+                            const std::vector<NodeTimes>& nodes) {
     earliest_ = pending;
-    for (const Edge& edge : edges_)
+    acting_ = acting;
+    for (const Edge& edge : edges_) {
         earliest_[edge.to] = std::min(earliest_[edge.to], edge.base);
+        if (!edge.sampling.sampled) acting_[edge.to] = std::min(acting_[edge.to], edge.base);
+    }
+    // What a node samples may come from before where it is, and changes nothing there.
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        earliest_[n] = std::max(earliest_[n], nodes[n].granted);
+        acting_[n] = std::max(acting_[n], nodes[n].granted);
+    }
     sort_again(order_, earliest_);
-    relaxed_.assign(earliest_.size(), kNever);
+    relaxed_.assign(earliest_.size(), false);
     for (bool changed = true; changed;) {
         changed = false;
         for (const std::uint32_t n : order_) {
-            // What a node only looks at may come from before where it is, and changes nothing there.
-            const Time time = earliest_[n] = std::max(earliest_[n], nodes[n].granted);
-            if (time >= relaxed_[n]) continue;
-            relaxed_[n] = time;
+            if (relaxed_[n]) continue;
+            relaxed_[n] = true;
             if (lookahead_[n] == kNever) continue;
             for (std::size_t e = first_[n]; e < first_[n + 1]; ++e) {
                 const Edge& edge = edges_[e];
-                const Time there = later(time, edge.lookahead);
-                if (there >= earliest_[edge.to]) continue;
-                earliest_[edge.to] = there;
+                const Time there = std::max(later(cause(n, edge), edge.lookahead), nodes[edge.to].granted);
+                bool lower = there < earliest_[edge.to];
+                if (lower) earliest_[edge.to] = there;
+                if (!edge.sampling.sampled && there < acting_[edge.to]) {
+                    acting_[edge.to] = there;
+                    lower = true;
+                }
+                if (!lower) continue;
+                relaxed_[edge.to] = false;
                 changed = true;
             }
         }
@@ -81,12 +95,15 @@ void Windows::find_earliest(const std::vector<Time>& pending, const std::vector<
 void Windows::find_limits() {
     limit_.assign(earliest_.size(), kNever);
     known_.assign(earliest_.size(), kNever);
+    answered_.assign(earliest_.size(), kNever);
     floor_ = kNever;
     for (std::size_t n = 0; n < earliest_.size(); ++n)
         for (std::size_t e = first_[n]; e < first_[n + 1]; ++e) {
             const Edge& edge = edges_[e];
-            const Time time = std::min(edge.base, later(earliest_[n], edge.lookahead));
-            Time& until = edge.sampled ? known_[edge.to] : limit_[edge.to];
+            const Time time = std::min(edge.base, later(cause(n, edge), edge.lookahead));
+            Time& until = edge.sampling.sampled                   ? known_[edge.to]
+                          : edge.sampling.turns && turn_[edge.to] ? answered_[edge.to]
+                                                                  : limit_[edge.to];
             until = std::min(until, time);
             floor_ = std::min(floor_, time);
         }
@@ -115,7 +132,7 @@ void Windows::choose(const std::vector<Time>& pending, const std::vector<NodeTim
             if (until <= granted || waits_to_look(n, granted)) continue;
             if (any || next_[n] <= round || until == end || (last_holds_up && granted == reached_) ||
                 until - granted >= stretch)
-                chosen_.push_back({n, until, known_[n]});
+                chosen_.push_back({n, until, known_[n], answered_[n]});
         }
         if (!chosen_.empty()) return;
     }

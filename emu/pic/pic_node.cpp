@@ -50,12 +50,44 @@ void PicNode::settle(cosim::Time until) {
 }
 
 void PicNode::run_board(cosim::Time until) {
-    if (options_.i2c_linked) return DspicNode::run_board(until);
+    if (options_.i2c_linked) return DspicNode::run_board(std::min(until, turn_.limit()));
     while (chip_->now() < until) {
         const cosim::Time step = std::min(until, std::max(bus_.due(), chip_->now()));
         if (step > chip_->now()) DspicNode::run_board(step);
         if (bus_.due() <= chip_->now()) chip_->i2c_answer(kI2cUnit, bus_.take());
     }
+}
+
+std::optional<cosim::PortIndex> PicNode::turn_port() const {
+    if (!options_.i2c_linked || options_.i2c_slave) return std::nullopt;
+    return kI2c;
+}
+
+/// The bus speaks to a master that waits for an answer, and to no other.
+bool PicNode::has_turn() const {
+    return turn_port() && !faults_ && !next_reset() && chip_->earliest_i2c(kI2cUnit) != cosim::kNever;
+}
+
+cosim::Time PicNode::advance_sampling(const cosim::SampledReach& reach, std::span<const cosim::Message> inbox,
+                                      std::vector<cosim::Message>& outbox) {
+    if (!has_turn()) {
+        advance(reach.until, inbox, outbox);
+        return reach.until;
+    }
+    outbox_ = &outbox;
+    turn_.begin(reach.answered);
+    for (const cosim::Message& message : inbox) {
+        run_until(message.time);
+        if (held_back()) break;
+        receive(message);
+    }
+    if (!held_back()) run_until(reach.until);
+    granted_ = chip_->now();
+    chip_->pause_at(cosim::kNever);
+    turn_.end();
+    settle(granted_);
+    outbox_ = nullptr;
+    return granted_;
 }
 
 void PicNode::receive(const cosim::Message& message) {
@@ -134,6 +166,7 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     if (unit != kI2cUnit) return;
     if (options_.i2c_linked) {
         outbox_->push_back({reached(phase.start), kI2c, phase});
+        turn_.said(*chip_, phase.start, chip_->now());
         return;
     }
     const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);

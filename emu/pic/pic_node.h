@@ -1,9 +1,11 @@
 #pragma once
 // The e-puck main board as a node of a run: chip, board, and the ports where links attach.
 
+#include "cosim/core/sampled_inputs.h"
 #include "emu/board/dspic_node.h"
 #include "emu/board/i2c_device.h"
 #include "emu/board/nvm_file.h"
+#include "emu/board/turn_hold.h"
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
 #include "emu/pic/empty_bus.h"
@@ -41,7 +43,9 @@ struct PicNodeOptions {
     std::vector<cosim::CarriedFault> faults{};   ///< of this board
 };
 
-class PicNode : private BoardListener, public board::DspicNode<PicNode, Board, PicLog> {
+class PicNode : private BoardListener,
+                public board::DspicNode<PicNode, Board, PicLog>,
+                public cosim::SampledInputs {
     friend board::BoardNode<PicNode>;
     friend board::DspicNode<PicNode, Board, PicLog>;
 
@@ -65,10 +69,17 @@ class PicNode : private BoardListener, public board::DspicNode<PicNode, Board, P
     std::string finish() override;
     cosim::Rewindable* rewindable() override { return &mark_; }
 
+    bool sampled(cosim::PortIndex) const override { return false; }
+    std::optional<cosim::PortIndex> turn_port() const override;
+    bool has_turn() const override;
+    cosim::Time advance_sampling(const cosim::SampledReach& reach, std::span<const cosim::Message> inbox,
+                                 std::vector<cosim::Message>& outbox) override;
+
   private:
     static constexpr int kI2cUnit = 1;
 
     void run_board(cosim::Time until);
+    bool held_back() const { return turn_.limit() <= chip_->now(); }
     void settle(cosim::Time until);
     void receive(const cosim::Message& message);
     void receive_signal(const cosim::Message& message, const cosim::Signal& signal);
@@ -100,6 +111,7 @@ class PicNode : private BoardListener, public board::DspicNode<PicNode, Board, P
     cosim::PortIndex slave_port_ = 0;
     board::I2cDeviceTimes i2c_times_;
     EmptyBus bus_;
+    board::TurnHold turn_;  ///< as the bus's master
     /// What goes back beside chip and board.
     struct Followers {
         PicLog& log;

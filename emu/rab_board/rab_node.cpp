@@ -37,26 +37,33 @@ bool RabNode::looks_by_program() const {
     return !faults_ && !chip_->monitors(Board::kDemodulators);
 }
 
-cosim::Time RabNode::advance_sampling(cosim::Time until, cosim::Time known,
-                                      std::span<const cosim::Message> inbox,
+/// It holds SCL until it has answered, and the bus can say nothing.
+bool RabNode::has_turn() const {
+    return answers() && looks_by_program() && gate_->applies();
+}
+
+cosim::Time RabNode::advance_sampling(const cosim::SampledReach& reach, std::span<const cosim::Message> inbox,
                                       std::vector<cosim::Message>& outbox) {
     if (!looks_by_program() || !gate_->applies()) {
-        until = std::max(granted_, std::min(until, known));
+        const cosim::Time until = std::max(granted_, std::min(reach.until, reach.known));
         const auto end = std::find_if(inbox.begin(), inbox.end(),
                                       [until](const cosim::Message& m) { return m.time >= until; });
         advance(until, {inbox.begin(), end}, outbox);
         return until;
     }
     outbox_ = &outbox;
-    gate_->open(known);
+    gate_->open(reach.known);
+    if (answers()) turn_.begin(reach.answered);
     for (const cosim::Message& message : inbox) {
         if (takes_ahead(message)) continue;
         run_until(message.time);
         if (held_back()) break;
         receive(message);
     }
-    if (!held_back()) run_until(until);
-    granted_ = held_back() ? chip_->now() : until;
+    if (!held_back()) run_until(reach.until);
+    granted_ = held_back() ? chip_->now() : reach.until;
+    chip_->pause_at(cosim::kNever);
+    turn_.end();
     gate_->lift();
     settle(granted_);
     outbox_ = nullptr;
@@ -156,6 +163,7 @@ void RabNode::signal_changed(SignalId id, double value, cosim::Time now) {
 void RabNode::i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) {
     log_.i2c_answer(answer, now);
     outbox_->push_back({reached(now), kI2c, answer});
+    turn_.said(*chip_, now, chip_->now());
 }
 
 /// A device port cannot carry it: the firmware waits for an answer for ever, and the report states it.

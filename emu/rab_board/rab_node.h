@@ -5,11 +5,13 @@
 #include "emu/board/dspic_node.h"
 #include "emu/board/i2c_device.h"
 #include "emu/board/nvm_file.h"
+#include "emu/board/turn_hold.h"
 #include "emu/dspic/chip/look_gate.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_log.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,7 +51,11 @@ class RabNode : private BoardListener,
     cosim::Rewindable* rewindable() override { return &mark_; }
 
     bool sampled(cosim::PortIndex port) const override { return port == kIr; }
-    cosim::Time advance_sampling(cosim::Time until, cosim::Time known, std::span<const cosim::Message> inbox,
+    /// A device on the bus speaks when it is asked.
+    bool independent(cosim::PortIndex port) const override { return port == kI2c; }
+    std::optional<cosim::PortIndex> turn_port() const override { return kI2c; }
+    bool has_turn() const override;
+    cosim::Time advance_sampling(const cosim::SampledReach& reach, std::span<const cosim::Message> inbox,
                                  std::vector<cosim::Message>& outbox) override;
 
   private:
@@ -57,7 +63,8 @@ class RabNode : private BoardListener,
 
     void settle(cosim::Time until);
     bool takes_ahead(const cosim::Message& message);
-    bool held_back() const { return gate_->held(); }
+    void run_board(cosim::Time until) { DspicNode::run_board(std::min(until, turn_.limit())); }
+    bool held_back() const { return gate_->held() || turn_.limit() <= chip_->now(); }
     bool looks_by_program() const;
     void receive(const cosim::Message& message);
     void receive_signal(const cosim::Signal& signal, cosim::Time now);
@@ -94,6 +101,7 @@ class RabNode : private BoardListener,
     board::I2cDeviceTimes i2c_times_;
     Own own_;
     std::optional<dspic::LookGate> gate_;  ///< before looks at light; set once there is a chip
+    board::TurnHold turn_;                 ///< as a device of the bus
     board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
 };
 

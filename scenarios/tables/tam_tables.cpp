@@ -12,7 +12,7 @@ namespace {
 /// The name of the project's own firmware, wherever the build has put it.
 constexpr std::string_view kOwn = "own";
 constexpr double kHighestBattery = 5.0;  // V
-constexpr double kSlowest = 300.0, kFastest = 115'200.0;
+constexpr double kSlowestBaud = 300.0, kFastestBaud = 115'200.0;
 
 void read_board(Reader& reader, TamBoard& tam) {
     if (const std::string image = reader.text("firmware", std::string(kOwn)); image != kOwn)
@@ -32,7 +32,7 @@ void read_board(Reader& reader, TamBoard& tam) {
         reader.fail("battery", "battery is out of range", "0 to 5 V, such as \"3.7 V\"");
     tam.console = reader.text("console", "");
     tam.console_baud = reader.quantity("console_baud", Dimension::Number, tam.console_baud);
-    if (!(tam.console_baud >= kSlowest && tam.console_baud <= kFastest))
+    if (!(tam.console_baud >= kSlowestBaud && tam.console_baud <= kFastestBaud))
         reader.fail("console_baud", "console_baud is out of range", "300 to 115200");
     tam.start = reader.quantity("start", Dimension::Time, 0.0);
     constexpr double kLongest = 86'400.0 * 30;  // s, as a run

@@ -42,7 +42,7 @@ TEST_CASE("windows have the limits of bounds") {
         const auto count = static_cast<std::size_t>(2 + random.below(12));
         std::vector<Channel> channels = drawn_channels(random, count);
         Windows windows;
-        windows.connect(channels, std::vector<bool>(channels.size()), count);
+        windows.connect(channels, std::vector<Windows::Sampling>(channels.size()), count);
         for (int turn = 0; turn < 3; ++turn) {
             if (!channels.empty()) {
                 Channel& changed = channels[random.below(channels.size())];
@@ -56,7 +56,7 @@ TEST_CASE("windows have the limits of bounds") {
             const std::vector<NodeTimes> nodes(count);
             Bounds bounds;
             bounds.compute(channels, pending);
-            windows.plan(pending, nodes, {kSecond, kNever, 10 * kMillisecond});
+            windows.plan(pending, pending, nodes, {kSecond, kNever, 10 * kMillisecond});
             REQUIRE(windows.floor() == bounds.floor());
             bool any = false;
             for (std::size_t n = 0; n < count; ++n) {
@@ -74,11 +74,11 @@ TEST_CASE("what a node only looks at does not limit it before it looks") {
     // 0 -> 1 is looked at, 2 -> 1 is not; 1 -> 0 is there so that 1 matters to somebody.
     const std::vector<Channel> channels{{0, 1, 100, kNever}, {2, 1, 500, kNever}, {1, 0, 0, 20}};
     Windows windows;
-    windows.connect(channels, {true, false, false}, 3);
+    windows.connect(channels, {{.sampled = true}, {}, {}}, 3);
     std::vector<NodeTimes> nodes(3);
     const std::vector<Time> none(3, kNever);
     const auto step_of = [&](std::size_t node) -> std::optional<Windows::Step> {
-        windows.plan(none, nodes, {kSecond, kNever, 10 * kMillisecond});
+        windows.plan(none, none, nodes, {kSecond, kNever, 10 * kMillisecond});
         for (const Windows::Step& step : windows.chosen())
             if (step.node == node) return step;
         return std::nullopt;
@@ -103,6 +103,40 @@ TEST_CASE("what a node only looks at does not limit it before it looks") {
     windows.update(1, later);
     step_of(1);
     CHECK(windows.limit(0) == 300);
+}
+
+TEST_CASE("what answers a node does not limit it while it has the turn") {
+    const std::vector<Channel> channels{{0, 1, 100, 90}, {1, 0, 0, 0}};
+    Windows windows;
+    windows.connect(channels, {{.turns = true}, {}}, 2);
+    const std::vector<NodeTimes> nodes(2);
+    const std::vector<Time> none(2, kNever);
+    const ScheduleLimits limits{kSecond, kNever, 10 * kMillisecond};
+    windows.plan(none, none, nodes, limits);
+    CHECK(windows.limit(1) == 90);
+    CHECK(windows.answered(1) == kNever);
+    windows.note_turn(1, true);
+    windows.plan(none, none, nodes, limits);
+    CHECK(windows.limit(1) == kNever);
+    CHECK(windows.answered(1) == 90);
+    CHECK(windows.limit(0) == 0);
+}
+
+TEST_CASE("what a node looks at does not bring forward what does not depend on it") {
+    // 0 -> 1 is looked at; 1 -> 2 does not depend on it, 1 -> 3 does.
+    const std::vector<Channel> channels{{0, 1, 100, kNever}, {1, 2, kNever, 20}, {1, 3, kNever, 20}};
+    Windows windows;
+    windows.connect(channels, {{.sampled = true}, {.independent = true}, {}}, 4);
+    const std::vector<NodeTimes> nodes(4);
+    const ScheduleLimits limits{kSecond, kNever, 10 * kMillisecond};
+    std::vector<Time> pending(4, kNever), acting = pending;
+    pending[1] = 60;  // light
+    windows.plan(pending, acting, nodes, limits);
+    CHECK(windows.limit(2) == kNever);
+    CHECK(windows.limit(3) == 80);
+    acting[1] = 70;
+    windows.plan(pending, acting, nodes, limits);
+    CHECK(windows.limit(2) == 90);
 }
 
 TEST_CASE("the trace in windows is the one of nodes that run ahead") {

@@ -2,7 +2,7 @@
 // Sources: DS70286, DCICON1 (CSCKD, COFSD, DJST: fact sheet peripherals.md section 7). That a sync in
 // mid-frame is not heard and that the module runs on in Sleep are assumptions (docs/fidelity.md).
 
-#include "emu/dspic/peripherals/dci.h"
+#include "emu/dspic/peripherals/serial/dci.h"
 
 #include "tests/dspic/chip30_bench.h"
 #include "tests/dspic/peripheral_bench.h"

@@ -3,8 +3,8 @@
 
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
 #include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
-#include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/low_voltage.h"
+#include "emu/dspic/peripherals/serial/dci.h"
 
 #include "tests/dspic/peripheral_bench.h"
 

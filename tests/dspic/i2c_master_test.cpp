@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/i2c_master.h"
+#include "emu/dspic/peripherals/serial/i2c_master.h"
 
 #include "tests/dspic/peripheral_bench.h"
 

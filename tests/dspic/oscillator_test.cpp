@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/oscillator.h"
+#include "emu/dspic/peripherals/timing/oscillator.h"
 
 #include "tests/dspic/peripheral_bench.h"
 

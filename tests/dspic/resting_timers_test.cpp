@@ -3,7 +3,7 @@
 
 #include "base/archive.h"
 #include "base/random.h"
-#include "emu/dspic/peripherals/timer.h"
+#include "emu/dspic/peripherals/timing/timer.h"
 #include "tests/dspic/peripheral_bench.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/timer.h"
+#include "emu/dspic/peripherals/timing/timer.h"
 
 #include "tests/dspic/peripheral_bench.h"
 

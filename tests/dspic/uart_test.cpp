@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/uart.h"
+#include "emu/dspic/peripherals/serial/uart.h"
 #include "protocols/uart_sampling.h"
 
 #include "tests/dspic/peripheral_bench.h"

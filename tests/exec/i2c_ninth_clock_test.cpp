@@ -254,7 +254,7 @@ class Drawn {
             return add(Kind::Acknowledge, one_in(3) ? 1 : 0);
         }
     }
-    /// No acknowledge in a byte of the device's (deviation 3 of emu/dspic/peripherals/i2c_master.h).
+    /// No acknowledge in a byte of the device's (deviation 3 of emu/dspic/peripherals/serial/i2c_master.h).
     void act_where_it_sends() {
         const auto die = random_.below(8);
         if (place_ == kNinth && die < 4) {

@@ -20,11 +20,10 @@ void Chip::name_places(const image::AvrImage& image) {
 }
 
 void Chip::program(const image::AvrImage& image) {
-    constexpr std::uint16_t kErased = 0xFFFF;
     constexpr std::uint8_t kErasedByte = 0xFF;
     Parts& p = *parts_;
     name_places(image);
-    std::vector<std::uint16_t> words(p.device.flash_words, kErased);
+    std::vector<std::uint16_t> words(p.device.flash_words, kErasedWord);
     const std::uint32_t boot_start = p.device.flash_words - p.fuses.boot_words();
     bool loads_boot = false;
     for (const image::ByteSegment& segment : image.flash)

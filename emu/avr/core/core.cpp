@@ -11,8 +11,6 @@ namespace puckloop::avr {
 
 namespace {
 
-constexpr std::uint16_t kErased = 0xFFFF;
-
 /// Runs off the end of the flash: the program counter wraps. No instruction, no time.
 const Op* wrap(Machine& m, const Op* op) {
     m.cycle -= op->cycles;
@@ -30,7 +28,7 @@ Machine::Machine(const DeviceInfo& info, IoSpace& registers, EventQueue& queue,
       io(registers),
       events(queue),
       irq(controller),
-      program(info.flash_words + kGuards, kErased),
+      program(info.flash_words + kGuards, kErasedWord),
       code_store(info.flash_words + kGuards),
       loops(info.flash_words) {
     for (Op& op : code_store)
@@ -55,7 +53,7 @@ Core::Core(const DeviceInfo& device, IoSpace& io, EventQueue& events, InterruptC
 Core::~Core() = default;
 
 std::uint16_t Core::program(std::uint32_t address) const {
-    return address < machine_->device.flash_words ? machine_->program[address] : kErased;
+    return address < machine_->device.flash_words ? machine_->program[address] : kErasedWord;
 }
 
 void Core::set_program(std::uint32_t address, std::uint16_t word) {

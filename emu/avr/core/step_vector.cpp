@@ -35,7 +35,6 @@ struct Case {
 constexpr std::array<std::uint16_t, 3> kGeneralPurposeIo = {0x3E, 0x4A, 0x4B};
 constexpr std::uint64_t kLongestRun = 4096;
 constexpr int kMostSteps = 2'000'000;
-constexpr std::uint16_t kErased = 0xFFFF;
 
 void parse_key(Case& c, std::string_view key, std::string_view value) {
     CoreState& st = c.state;
@@ -124,7 +123,7 @@ struct StepMachine::Parts {
 
 void StepMachine::Parts::set_up(const Case& c) {
     for (const std::uint32_t address : dirty)
-        core.set_program(address, kErased);
+        core.set_program(address, kErasedWord);
     dirty.clear();
     refused.reset();
     const auto ram = core.ram();

@@ -19,6 +19,9 @@ using Cycle = chip::Cycle;
 using chip::EventQueue;
 using chip::kNoCycle;
 
+/// A word of flash that is erased.
+inline constexpr std::uint16_t kErasedWord = 0xFFFF;
+
 /// Registers have their data addresses: I/O address + 0x20. The working registers lie below.
 using RegisterInfo = chip::RegisterInfo<std::uint8_t>;
 using IoSpace = chip::RegisterSpace<std::uint8_t, 0x100>;

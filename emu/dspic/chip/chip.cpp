@@ -71,8 +71,7 @@ std::map<std::uint32_t, std::uint32_t> Chip::memory() const {
 }
 
 void Chip::power_on() {
-    constexpr std::uint32_t kErased = 0xFFFFFF;
-    if (parts_->core.program(0) == kErased)
+    if (parts_->core.program(0) == kErasedWord)
         parts_->report.warnings.push_back({0, "no program at the reset vector: address 0 is erased", 0});
     parts_->core.reset(ResetCause::PowerOn);
 }

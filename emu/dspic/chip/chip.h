@@ -13,9 +13,9 @@
 #include "emu/dspic/devices/errata.h"
 #include "emu/dspic/judge/wait_report.h"
 #include "emu/dspic/machine/event_queue.h"
-#include "emu/dspic/peripherals/output_compare_state.h"
 #include "emu/dspic/peripherals/pins.h"
-#include "emu/dspic/peripherals/uart_counters.h"
+#include "emu/dspic/peripherals/serial/uart_counters.h"
+#include "emu/dspic/peripherals/timing/output_compare_state.h"
 
 #include <cstdint>
 #include <map>

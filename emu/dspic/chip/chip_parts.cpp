@@ -2,7 +2,7 @@
 
 #include "emu/dspic/chip/chip_parts.h"
 
-#include "emu/dspic/peripherals/oscillator_33f.h"
+#include "emu/dspic/peripherals/timing/oscillator_33f.h"
 
 #include <array>
 

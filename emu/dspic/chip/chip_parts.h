@@ -8,11 +8,11 @@
 #include "emu/dspic/layouts/layout.h"
 #include "emu/dspic/machine/interrupts.h"
 #include "emu/dspic/peripherals/adc12.h"
-#include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/external_interrupts.h"
-#include "emu/dspic/peripherals/i2c_slave.h"
 #include "emu/dspic/peripherals/low_voltage.h"
-#include "emu/dspic/peripherals/oscillator.h"
+#include "emu/dspic/peripherals/serial/dci.h"
+#include "emu/dspic/peripherals/serial/i2c_slave.h"
+#include "emu/dspic/peripherals/timing/oscillator.h"
 #include "emu/image/code_places.h"
 
 #include <deque>

@@ -1,7 +1,7 @@
 // What a dsPIC remembers: saved, loaded, and gone back to.
 
 #include "emu/dspic/chip/chip_parts.h"
-#include "emu/dspic/peripherals/oscillator_33f.h"
+#include "emu/dspic/peripherals/timing/oscillator_33f.h"
 
 #include "base/archive.h"
 #include "base/checkpoint.h"

@@ -150,9 +150,8 @@ struct StepMachine::Parts {
 };
 
 void StepMachine::Parts::place_program(const Case& c) {
-    constexpr std::uint32_t kErased = 0xFFFFFF;
     for (const std::uint32_t address : dirty)
-        core.poke_program(address, kErased);
+        core.poke_program(address, kErasedWord);
     dirty.clear();
     const auto count = static_cast<std::uint32_t>(c.words.size());
     if (c.state.pc + 2 * count > device.flash_end)

@@ -13,6 +13,9 @@
 
 namespace puckloop::dspic {
 
+/// A word of flash that is erased.
+inline constexpr std::uint32_t kErasedWord = 0xFFFFFF;
+
 /// A user interrupt source: its number (IRQ 0 = INT0), the data sheet's name without "Interrupt", and its
 /// bits.
 struct IrqName {

@@ -12,7 +12,7 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint64_t kFewestIterations = 2;
+constexpr std::uint64_t kFewestPassed = 2;
 constexpr std::size_t kMostServices = 4096;
 
 /// An interrupt that comes in during the skip.
@@ -196,7 +196,7 @@ bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     std::vector<PassedService>& services = no_services();
     const LoopTrace& trace = known.trace;
     simulate(known.plan, trace, skip, arrival, known.plan.iterations - 1, services);
-    if (skip.iterations < kFewestIterations || skip.services == 0) return false;
+    if (skip.iterations < kFewestPassed || skip.services == 0) return false;
 
     services.resize(skip.services);
     for (const PassedService& service : services)

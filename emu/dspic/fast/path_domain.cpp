@@ -9,7 +9,7 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr int kMostInstructions = 600;
+constexpr int kMostOnPath = 600;
 constexpr std::size_t kMostArrivals = 8;
 constexpr std::uint16_t kStackPointer = 2 * 15;  ///< W15's data address
 
@@ -38,7 +38,7 @@ bool PathDomain::walk(const Op* op) {
     try {
         std::uint32_t writes = 0;
         path_.keep = 0xFFFFFFFF;
-        for (int i = 0; i < kMostInstructions; ++i) {
+        for (int i = 0; i < kMostOnPath; ++i) {
             if (op->run == &decode_now || op->marks != 0) return false;
             instruction_ = path_.cycles;
             if (op->uses & writes & 0xFFFF) ++path_.cycles;

@@ -8,7 +8,7 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr int kMostInstructions = 32;
+constexpr int kMostInRoutine = 32;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ SymbolicIsr::End SymbolicIsr::run(const Op* op) {
 SymbolicIsr::End SymbolicIsr::walk(const Op* op) {
     summary_.keep = 0xFFFFFFFF;
     std::uint32_t writes = 0;
-    for (int i = 0; i < kMostInstructions; ++i) {
+    for (int i = 0; i < kMostInRoutine; ++i) {
         if (op->run == &decode_now) return End::NotYet;
         if (op->marks) return End::Never;
         if (op->uses & writes & 0xFFFF) ++summary_.cycles;

@@ -4,17 +4,17 @@
 
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/peripherals/adc_33f.h"
-#include "emu/dspic/peripherals/can.h"
-#include "emu/dspic/peripherals/dci.h"
+#include "emu/dspic/peripherals/can/can.h"
+#include "emu/dspic/peripherals/can/ecan.h"
 #include "emu/dspic/peripherals/dma.h"
-#include "emu/dspic/peripherals/ecan.h"
-#include "emu/dspic/peripherals/i2c_master.h"
-#include "emu/dspic/peripherals/input_capture.h"
-#include "emu/dspic/peripherals/output_compare.h"
 #include "emu/dspic/peripherals/ports.h"
-#include "emu/dspic/peripherals/spi.h"
-#include "emu/dspic/peripherals/timer.h"
-#include "emu/dspic/peripherals/uart.h"
+#include "emu/dspic/peripherals/serial/dci.h"
+#include "emu/dspic/peripherals/serial/i2c_master.h"
+#include "emu/dspic/peripherals/serial/spi.h"
+#include "emu/dspic/peripherals/serial/uart.h"
+#include "emu/dspic/peripherals/timing/input_capture.h"
+#include "emu/dspic/peripherals/timing/output_compare.h"
+#include "emu/dspic/peripherals/timing/timer.h"
 
 #include <array>
 #include <cstdint>

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::uint32_t kDebuggerBreak = 0xDA4000;
 constexpr std::uint32_t kSimulatorStop = 0xDAC000;
-constexpr std::uint32_t kErased = 0xFFFFFF;
 
 /// Undefined encodings: the two words that debuggers plant run as NOP, every other one resets.
 const Op* undefined(Machine& m, const Op* op) {
@@ -128,8 +127,8 @@ void decode(Machine& m, Op& op) {
 /// First visit: decode, then leave and come back to the finished operation. What the run loop adds for it
 /// afterwards is taken off here.
 const Op* decode_now(Machine& m, const Op* op) {
-    if (op->word == kErased)  // NOPR: silicon runs through to the end of flash, and into an address error
-        warn_once(m, kErased, "runs into erased flash");
+    if (op->word == kErasedWord)  // NOPR: silicon runs through to the end of flash, and into an address error
+        warn_once(m, kErasedWord, "runs into erased flash");
     decode(m, m.code[op - m.code]);
     m.st.cycle -= op->cycles;
     --m.instructions;

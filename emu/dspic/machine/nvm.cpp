@@ -17,7 +17,6 @@ namespace {
 
 constexpr RegisterBits kNVMCON{"NVMCON"};
 
-constexpr std::uint32_t kErased = 0xFFFFFF;
 constexpr double kDuration = 2e-3;             ///< seconds, typical
 constexpr double kRow33F = 11064 / 7.37e6;     ///< seconds: so many cycles of the RC oscillator (DS70286)
 constexpr Cycle kDurationUnknownRate = 29491;  ///< 2 ms at the e-puck's 14.7456 MHz
@@ -34,7 +33,7 @@ bool in_configuration(const Machine& m, std::uint32_t address) {
 void erase(Machine& m, std::uint32_t address, std::uint32_t words) {
     const std::uint32_t start = address & ~(2 * words - 1);
     for (std::uint32_t i = 0; i < words; ++i)
-        write_program(m, start + 2 * i, kErased);
+        write_program(m, start + 2 * i, kErasedWord);
 }
 
 /// Programming only clears bits.
@@ -45,7 +44,7 @@ void program(Machine& m, std::uint32_t address, std::uint32_t words) {
         const std::uint32_t latch = m.nvm.latch[(at >> 1) % m.nvm.latch.size()];
         write_program(m, at, read_program(m, at) & latch);
     }
-    std::fill(m.nvm.latch.begin(), m.nvm.latch.end(), kErased);
+    std::fill(m.nvm.latch.begin(), m.nvm.latch.end(), kErasedWord);
 }
 
 bool start_30f(Machine& m, std::uint16_t code) {
@@ -98,7 +97,7 @@ bool start_33f(Machine& m, std::uint16_t code) {
         if (flash) program(m, address, 1);
         return flash;
     case 0x40:
-        return in_configuration(m, address) && write_program(m, address & ~1u, kErased);
+        return in_configuration(m, address) && write_program(m, address & ~1u, kErasedWord);
     case 0x00:
         return in_configuration(m, address) &&
                write_program(m, address & ~1u, m.nvm.latch[(address >> 1) % m.nvm.latch.size()]);
@@ -131,14 +130,14 @@ void start(Machine& m) {
     m.limit = 0;
 }
 
-std::uint16_t read_register(void* owner, std::uint16_t address) {
+std::uint16_t read_nvm_register(void* owner, std::uint16_t address) {
     const auto& m = *static_cast<const Machine*>(owner);
     if (address == sfr::NVMADR) return static_cast<std::uint16_t>(m.nvm.address);
     if (address == sfr::NVMADRU) return static_cast<std::uint16_t>(m.nvm.address >> 16 & 0xFF);
     return 0;  // NVMKEY is write-only
 }
 
-void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+void write_nvm_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     auto& m = *static_cast<Machine*>(owner);
     const auto merged = [&](std::uint32_t old) {
         return (old & ~std::uint32_t{mask} & 0xFFFF) | (value & mask);
@@ -176,14 +175,14 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t value, std
 }  // namespace
 
 void hook_nvm(Machine& m) {
-    m.sfr.hook(sfr::NVMCON, &m, nullptr, &write_register);
-    m.sfr.hook(sfr::NVMKEY, &m, &read_register, &write_register);
+    m.sfr.hook(sfr::NVMCON, &m, nullptr, &write_nvm_register);
+    m.sfr.hook(sfr::NVMKEY, &m, &read_nvm_register, &write_nvm_register);
     if (!m.device.family_33f) {
-        m.sfr.hook(sfr::NVMADR, &m, &read_register, &write_register);
-        m.sfr.hook(sfr::NVMADRU, &m, &read_register, &write_register);
+        m.sfr.hook(sfr::NVMADR, &m, &read_nvm_register, &write_nvm_register);
+        m.sfr.hook(sfr::NVMADRU, &m, &read_nvm_register, &write_nvm_register);
     }
     m.nvm.slot = m.events.add(&m, &finished);
-    m.nvm.latch.assign(m.device.row_words, kErased);
+    m.nvm.latch.assign(m.device.row_words, kErasedWord);
 }
 
 void reset_nvm(Machine& m, ResetCause cause, std::uint16_t nvmcon_before) {
@@ -194,14 +193,14 @@ void reset_nvm(Machine& m, ResetCause cause, std::uint16_t nvmcon_before) {
     if (con & kNVMCON["WR"]) con = static_cast<std::uint16_t>((con & ~kNVMCON["WR"]) | kNVMCON["WRERR"]);
     m.sfr.raw(sfr::NVMCON) = con;
     m.nvm.key_step = 0;
-    std::fill(m.nvm.latch.begin(), m.nvm.latch.end(), kErased);
+    std::fill(m.nvm.latch.begin(), m.nvm.latch.end(), kErasedWord);
 }
 
 void table_write(Machine& m, std::uint32_t address, bool high, bool byte, std::uint16_t value) {
     m.nvm.address = address & 0xFFFFFE;
     std::uint32_t& latch = m.nvm.latch[(address >> 1) % m.nvm.latch.size()];
     const int shift = (high ? 16 : 0) + (byte && address & 1 ? 8 : 0);
-    const std::uint32_t field = (byte || high ? 0xFFu : 0xFFFFu) << shift & kErased;
+    const std::uint32_t field = (byte || high ? 0xFFu : 0xFFFFu) << shift & kErasedWord;
     latch = (latch & ~field) | (std::uint32_t{value} << shift & field);
 }
 

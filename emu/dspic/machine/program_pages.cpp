@@ -1,5 +1,6 @@
 #include "emu/dspic/machine/program_pages.h"
 
+#include "emu/dspic/devices/device.h"
 #include "emu/dspic/machine/machine.h"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 namespace puckloop::dspic {
 
 namespace {
-
-constexpr std::uint32_t kErased = 0xFFFFFF;
 
 std::size_t page() {
     static const auto size = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
@@ -144,7 +143,7 @@ ProgramPages::ProgramPages(std::uint32_t words, std::uint32_t guards)
     operations_ = reinterpret_cast<Op*>(reserved(pieces_, operation_bytes()));
     words_ = reinterpret_cast<std::uint32_t*>(reserved(pieces_, word_bytes()));
     Pool& pool = Pool::of_process();
-    const auto erased = pool.piece(std::vector(piece_words(), kErased));
+    const auto erased = pool.piece(std::vector(piece_words(), kErasedWord));
     for (std::size_t i = 0; i < pieces_; ++i) {
         pool.map(*erased, operations_ + i * piece_words(), words_ + i * piece_words());
         mapped_[i] = erased;

@@ -3,7 +3,7 @@
 namespace puckloop::dspic {
 
 namespace {
-constexpr Ports::Pin kInputs[] = {
+constexpr Ports::Pin kIntPins[] = {
     {PortLetter::F, 6}, {PortLetter::A, 12}, {PortLetter::A, 13}, {PortLetter::A, 14}, {PortLetter::A, 15},
 };
 }  // namespace
@@ -14,7 +14,7 @@ ExternalInterrupts::ExternalInterrupts(const Surroundings& around, Ports& ports,
     for (int i = 0; i < 5; ++i) {
         Input& input = inputs_[static_cast<std::size_t>(i)];
         input = {this, i};
-        ports.watch(kInputs[i].port, kInputs[i].number, &input, pin_changed);
+        ports.watch(kIntPins[i].port, kIntPins[i].number, &input, pin_changed);
     }
 }
 

@@ -114,8 +114,7 @@ const Op* WDR(Machine& m, const Op* op) {
 
 const Op* undefined(Machine& m, const Op* op) {
     const std::uint16_t word = m.program[m.pc_of(op)];
-    constexpr std::uint16_t kErased = 0xFFFF;
-    if (word == kErased)
+    if (word == kErasedWord)
         warn_once(m, op, word, "runs into erased flash, which counts as NOPs");
     else
         warn_once(m, op, word, fmt::format("undefined word 0x{:04X} executed as NOP", word));

@@ -1,4 +1,5 @@
 #include "linuxboard/shim/preload/descriptors/device_numbers.h"
+#include "linuxboard/shim/preload/host/path.h"
 
 #include "linuxboard/shim/preload/host/link.h"
 
@@ -23,10 +24,6 @@ constexpr Names kNames[] = {
 }  // namespace
 
 namespace {
-const char* last_part(const char* path) {
-    const char* slash = std::strrchr(path, '/');
-    return slash != nullptr ? slash + 1 : path;
-}
 
 /// A name of the bus without a number has that of the first name.
 const char* numbered_name(const char* name) {

@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/host/host.h"
+#include "linuxboard/shim/preload/host/path.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 
 #include <fcntl.h>
@@ -52,11 +53,6 @@ int named(const char* path) {
             return forbidden_unless_active(static_cast<int>(device.device));
     }
     return kNoDevice;
-}
-
-const char* last_part(const char* path) {
-    const char* slash = std::strrchr(path, '/');
-    return slash != nullptr ? slash + 1 : path;
 }
 
 bool ends_like_a_device(const char* path) {

@@ -18,7 +18,6 @@
 namespace puckloop::shim {
 
 namespace {
-constexpr int kMostDescriptors = 4096;
 std::bitset<kMostDescriptors> internal;
 }  // namespace
 

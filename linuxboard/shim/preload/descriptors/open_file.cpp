@@ -18,7 +18,6 @@
 namespace puckloop::shim {
 
 namespace {
-constexpr int kMostDescriptors = 4096;
 OpenFile* table[kMostDescriptors];
 constexpr const char* kRandomPath = "/dev/urandom";
 /// What F_GETFL shows of the flags that open() takes.

@@ -9,6 +9,9 @@
 
 namespace puckloop::shim {
 
+/// Descriptors beyond this are the host's alone. Linux gives a process 1,024 unless it asks for more.
+inline constexpr int kMostDescriptors = 4096;
+
 /// One open file description; several descriptors may share it.
 struct OpenFile {
     enum class Kind { Tty, I2c, Random, Video, Socket };

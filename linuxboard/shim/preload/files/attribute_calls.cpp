@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/real.h"
 
 #include <sys/xattr.h>
@@ -12,10 +13,6 @@
 using namespace puckloop::shim;
 
 namespace {
-int fail(int error) {
-    errno = error;
-    return -1;
-}
 bool is_device(const char* path, bool follow) {
     const int device = device_at(AT_FDCWD, path, follow);
     return device >= 0 || device == kRandomDevice;

@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/files/i2c_transfer.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 
 #include <limits.h>
@@ -24,11 +25,6 @@ constexpr std::uint32_t kMessageTimeoutMs = 1000;
 constexpr unsigned long kFunctions =
     I2C_FUNC_I2C | (I2C_FUNC_SMBUS_EMUL & ~I2C_FUNC_SMBUS_QUICK) | I2C_FUNC_PROTOCOL_MANGLING;
 constexpr std::size_t kMostTransferData = wire::kMaximumData - 1024;
-
-int fail(int error) {
-    errno = error;
-    return -1;
-}
 
 /// Refuses what the adapter cannot do; 0, or -1 and errno.
 int check(const OpenFile& file, const i2c_msg* messages, unsigned count) {

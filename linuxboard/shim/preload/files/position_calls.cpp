@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
@@ -25,10 +26,6 @@ ssize_t pwritev64v2(int, const iovec*, int, off64_t, int);
 }
 
 namespace {
-int fail(int error) {
-    errno = error;
-    return -1;
-}
 
 bool is_link(int fd) {
     return active() && is_link_descriptor(fd);
@@ -42,7 +39,7 @@ int check_position(const OpenFile& file, off_t offset) {
 }
 
 /// Also the link's, which are none of the program's.
-bool is_device(int fd) {
+bool is_the_nodes(int fd) {
     return open_file(fd) != nullptr || is_link(fd);
 }
 
@@ -117,13 +114,13 @@ SHIM_EXPORT ssize_t pwritev64(int fd, const iovec* parts, int count, off64_t off
 /// With offset -1 it is readv() with flags.
 SHIM_EXPORT ssize_t preadv2(int fd, const iovec* parts, int count, off_t offset, int flags) {
     if (is_link(fd)) return fail(EBADF);
-    if (!is_device(fd)) return REAL(preadv2)(fd, parts, count, offset, flags);
+    if (!is_the_nodes(fd)) return REAL(preadv2)(fd, parts, count, offset, flags);
     if (!takes_flags(*open_file(fd), flags)) return fail(EOPNOTSUPP);
     return offset == -1 ? readv(fd, parts, count) : preadv(fd, parts, count, offset);
 }
 SHIM_EXPORT ssize_t pwritev2(int fd, const iovec* parts, int count, off_t offset, int flags) {
     if (is_link(fd)) return fail(EBADF);
-    if (!is_device(fd)) return REAL(pwritev2)(fd, parts, count, offset, flags);
+    if (!is_the_nodes(fd)) return REAL(pwritev2)(fd, parts, count, offset, flags);
     if (!takes_flags(*open_file(fd), flags)) return fail(EOPNOTSUPP);
     return offset == -1 ? writev(fd, parts, count) : pwritev(fd, parts, count, offset);
 }
@@ -136,16 +133,16 @@ SHIM_EXPORT ssize_t pwritev64v2(int fd, const iovec* parts, int count, off64_t o
 }
 
 SHIM_EXPORT ssize_t sendfile(int to, int from, off_t* offset, size_t size) noexcept {
-    if (socket_file(to) != nullptr && !is_device(from))
+    if (socket_file(to) != nullptr && !is_the_nodes(from))
         return static_cast<ssize_t>(send_file(to, from, offset, size));
-    return is_device(to) || is_device(from) ? fail(EINVAL) : REAL(sendfile)(to, from, offset, size);
+    return is_the_nodes(to) || is_the_nodes(from) ? fail(EINVAL) : REAL(sendfile)(to, from, offset, size);
 }
 SHIM_EXPORT ssize_t sendfile64(int to, int from, off64_t* offset, size_t size) noexcept {
     return sendfile(to, from, offset, size);
 }
 SHIM_EXPORT ssize_t splice(int from, off64_t* from_offset, int to, off64_t* to_offset, size_t size,
                            unsigned flags) {
-    if (is_device(to) || is_device(from)) return fail(EINVAL);
+    if (is_the_nodes(to) || is_the_nodes(from)) return fail(EINVAL);
     const auto call = [&] { return REAL(splice)(from, from_offset, to, to_offset, size, flags); };
     if ((flags & SPLICE_F_NONBLOCK) != 0) return call();
     return is_channel(from) ? outside(from, POLLIN, call) : outside(to, POLLOUT, call);
@@ -160,6 +157,6 @@ SHIM_EXPORT ssize_t vmsplice(int fd, const iovec* parts, size_t count, unsigned 
 }
 SHIM_EXPORT ssize_t copy_file_range(int from, off64_t* from_offset, int to, off64_t* to_offset, size_t size,
                                     unsigned flags) {
-    if (is_device(to) || is_device(from)) return fail(EINVAL);
+    if (is_the_nodes(to) || is_the_nodes(from)) return fail(EINVAL);
     return REAL(copy_file_range)(from, from_offset, to, to_offset, size, flags);
 }

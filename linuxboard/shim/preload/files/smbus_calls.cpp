@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/files/i2c_transfer.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 
 #include <cerrno>
@@ -13,11 +14,6 @@ namespace puckloop::shim {
 namespace {
 /// Longest SMBus message: command, count, block and packet error code.
 constexpr std::size_t kSmbusBytes = I2C_SMBUS_BLOCK_MAX + 3;
-
-int fail(int error) {
-    errno = error;
-    return -1;
-}
 
 bool is_known(__u32 size) {
     switch (size) {

@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/preload/descriptors/device_numbers.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
@@ -22,11 +23,6 @@
 using namespace puckloop::shim;
 
 namespace puckloop::shim {
-
-static int fail(int error) {
-    errno = error;
-    return -1;
-}
 
 namespace {
 /// What a terminal keeps and nothing here obeys; of this process and its children to come.

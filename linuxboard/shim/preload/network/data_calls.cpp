@@ -1,6 +1,7 @@
 // What moves data through sockets: send, recv and their kin.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -30,11 +31,6 @@ ssize_t __recvfrom_chk(int, void*, size_t, size_t, int, sockaddr*, socklen_t*);
 }
 
 namespace {
-
-int fail(int error) {
-    errno = error;
-    return -1;
-}
 
 int refuse_urgent(int error) {
     note("urgent data (MSG_OOB) is not carried by the network");

@@ -1,6 +1,7 @@
 // The interfaces of a board on a network: `lo` and `wlan0`.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
@@ -41,11 +42,6 @@ const Interface* find_interface(const char* name) {
     for (const Interface& one : kInterfaces)
         if (std::strcmp(one.name, name) == 0) return &one;
     return nullptr;
-}
-
-int fail(int error) {
-    errno = error;
-    return -1;
 }
 
 void put_place(sockaddr& to, std::uint32_t address) {

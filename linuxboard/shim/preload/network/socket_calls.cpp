@@ -1,6 +1,7 @@
 // socket() and the calls that set a socket up.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -78,11 +79,6 @@ bool put_address(const OpenFile& file, const wire::SocketAddress& address, socka
 }  // namespace puckloop::shim
 
 namespace {
-
-int fail(int error) {
-    errno = error;
-    return -1;
-}
 
 /// The program's address of a netlink socket.
 bool get_number(wire::SocketAddress& address, const sockaddr* theirs, socklen_t length) {

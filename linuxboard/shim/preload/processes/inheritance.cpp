@@ -15,7 +15,6 @@ namespace puckloop::shim {
 
 namespace {
 constexpr std::size_t kMostFiles = 128;
-constexpr int kMostDescriptors = 4096;
 constexpr std::uint32_t kMostChannels = 512;
 
 struct Counts {

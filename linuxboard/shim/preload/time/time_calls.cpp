@@ -2,6 +2,7 @@
 // clocks).
 
 #include "base/random.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/board_clock.h"
@@ -66,11 +67,6 @@ Time absolute_deadline(clockid_t clock, const timespec& time) {
 
 bool is_valid(const timespec& time) {
     return time.tv_nsec >= 0 && time.tv_nsec < kNanosecondsPerSecond;
-}
-
-int fail(int error) {
-    errno = error;
-    return -1;
 }
 
 /// One that Linux has, and no processor's.

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/timer.h"
+#include "emu/dspic/peripherals/timing/timer.h"
 
 #include "emu/dspic/devices/register_bits.h"
 

@@ -1,7 +1,7 @@
 // CAN reception: filters and masks, the two buffers, overflow.
 
-#include "emu/dspic/peripherals/can.h"
-#include "emu/dspic/peripherals/can_registers.h"
+#include "emu/dspic/peripherals/can/can.h"
+#include "emu/dspic/peripherals/can/can_registers.h"
 
 namespace puckloop::dspic {
 

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/output_compare.h"
+#include "emu/dspic/peripherals/timing/output_compare.h"
 
 #include "emu/dspic/devices/register_bits.h"
 

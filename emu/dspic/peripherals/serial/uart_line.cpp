@@ -3,7 +3,7 @@
 // (loopback), 17.12 and 17.13.
 
 #include "emu/dspic/devices/register_bits.h"
-#include "emu/dspic/peripherals/uart.h"
+#include "emu/dspic/peripherals/serial/uart.h"
 
 #include "protocols/uart_line.h"
 #include "protocols/uart_sampling.h"

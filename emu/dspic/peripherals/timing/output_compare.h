@@ -16,11 +16,11 @@
 //     the period behind it stays low whatever its duty. Length and occasion are assumptions.
 
 #include "emu/dspic/devices/errata.h"
-#include "emu/dspic/peripherals/output_compare_state.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/peripherals/timer.h"
+#include "emu/dspic/peripherals/timing/output_compare_state.h"
+#include "emu/dspic/peripherals/timing/timer.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
-#include "emu/dspic/peripherals/i2c_master.h"
+#include "emu/dspic/peripherals/serial/i2c_master.h"
 
 #include "cosim/i2c/i2c_shared.h"
-#include "emu/dspic/peripherals/i2c_registers.h"
-#include "emu/dspic/peripherals/i2c_slave.h"
+#include "emu/dspic/peripherals/serial/i2c_registers.h"
+#include "emu/dspic/peripherals/serial/i2c_slave.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/dci.h"
+#include "emu/dspic/peripherals/serial/dci.h"
 
 #include "emu/dspic/devices/register_bits.h"
 

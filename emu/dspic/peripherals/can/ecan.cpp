@@ -1,7 +1,7 @@
-#include "emu/dspic/peripherals/ecan.h"
+#include "emu/dspic/peripherals/can/ecan.h"
 
-#include "emu/dspic/peripherals/can_registers.h"
-#include "emu/dspic/peripherals/ecan_registers.h"
+#include "emu/dspic/peripherals/can/can_registers.h"
+#include "emu/dspic/peripherals/can/ecan_registers.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/oscillator.h"
+#include "emu/dspic/peripherals/timing/oscillator.h"
 
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
 #include "emu/dspic/devices/register_bits.h"

@@ -24,9 +24,9 @@
 #include "cosim/core/message_state.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
+#include "emu/dspic/peripherals/serial/uart_counters.h"
+#include "emu/dspic/peripherals/serial/uart_receiver.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/peripherals/uart_counters.h"
-#include "emu/dspic/peripherals/uart_receiver.h"
 #include "protocols/irda.h"
 
 #include <array>

@@ -3,7 +3,7 @@
 // what all CAN modules have in common (can_line.h, with its deviations). Source: dsPIC30F Family Reference
 // Manual, section 23 (DS70070), and DS70143.
 
-#include "emu/dspic/peripherals/can_line.h"
+#include "emu/dspic/peripherals/can/can_line.h"
 
 #include <cstdint>
 #include <optional>

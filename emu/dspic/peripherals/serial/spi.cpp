@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/spi.h"
+#include "emu/dspic/peripherals/serial/spi.h"
 
 #include "emu/dspic/devices/register_bits.h"
 

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/input_capture.h"
+#include "emu/dspic/peripherals/timing/input_capture.h"
 
 #include "emu/dspic/devices/register_bits.h"
 

@@ -3,7 +3,7 @@
 // stands at SDO before the first edge.
 
 #include "emu/dspic/devices/register_bits.h"
-#include "emu/dspic/peripherals/spi.h"
+#include "emu/dspic/peripherals/serial/spi.h"
 
 namespace puckloop::dspic {
 

@@ -14,7 +14,7 @@
 //  5. OSCTUN moves the RC oscillator by its nominal 0.375 % a step (expected values of errata DS80280G, item
 //  42), which silicon leaves between 16 and 31 and between -16 and -1; programming times stay nominal.
 
-#include "emu/dspic/peripherals/clock_control.h"
+#include "emu/dspic/peripherals/timing/clock_control.h"
 
 #include <cstdint>
 

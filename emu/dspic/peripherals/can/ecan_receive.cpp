@@ -1,8 +1,8 @@
 // ECAN reception: filters and masks, buffers, the FIFO, overflow, answers to remote frames.
 
-#include "emu/dspic/peripherals/can_registers.h"
-#include "emu/dspic/peripherals/ecan.h"
-#include "emu/dspic/peripherals/ecan_registers.h"
+#include "emu/dspic/peripherals/can/can_registers.h"
+#include "emu/dspic/peripherals/can/ecan.h"
+#include "emu/dspic/peripherals/can/ecan_registers.h"
 
 namespace puckloop::dspic {
 

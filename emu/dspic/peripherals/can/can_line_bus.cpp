@@ -1,7 +1,7 @@
 // A CAN module and the bus that its board wires it to: what it offers, and what it makes of the bus's news.
 
-#include "emu/dspic/peripherals/can_line.h"
-#include "emu/dspic/peripherals/can_registers.h"
+#include "emu/dspic/peripherals/can/can_line.h"
+#include "emu/dspic/peripherals/can/can_registers.h"
 
 #include <algorithm>
 

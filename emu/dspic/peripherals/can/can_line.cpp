@@ -1,6 +1,6 @@
-#include "emu/dspic/peripherals/can_line.h"
+#include "emu/dspic/peripherals/can/can_line.h"
 
-#include "emu/dspic/peripherals/can_registers.h"
+#include "emu/dspic/peripherals/can/can_registers.h"
 
 #include <algorithm>
 #include <iterator>

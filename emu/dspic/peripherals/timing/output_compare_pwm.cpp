@@ -1,7 +1,7 @@
 // PWM at the pin, and the fault inputs.
 
 #include "emu/dspic/devices/register_bits.h"
-#include "emu/dspic/peripherals/output_compare.h"
+#include "emu/dspic/peripherals/timing/output_compare.h"
 
 namespace puckloop::dspic {
 

@@ -1,4 +1,4 @@
-#include "emu/dspic/peripherals/oscillator_33f.h"
+#include "emu/dspic/peripherals/timing/oscillator_33f.h"
 
 #include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
 #include "emu/dspic/devices/register_bits.h"

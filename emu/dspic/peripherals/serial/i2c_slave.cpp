@@ -1,7 +1,7 @@
-#include "emu/dspic/peripherals/i2c_slave.h"
+#include "emu/dspic/peripherals/serial/i2c_slave.h"
 
 #include "cosim/i2c/i2c_shared.h"
-#include "emu/dspic/peripherals/i2c_registers.h"
+#include "emu/dspic/peripherals/serial/i2c_registers.h"
 
 #include <algorithm>
 

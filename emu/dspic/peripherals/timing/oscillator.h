@@ -11,7 +11,7 @@
 //     is at once. After Sleep the
 //     same oscillator starts: typical times (wake_seconds()).
 
-#include "emu/dspic/peripherals/clock_control.h"
+#include "emu/dspic/peripherals/timing/clock_control.h"
 
 #include <cstdint>
 

@@ -16,7 +16,7 @@
 #include "cosim/core/message.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/peripherals/timer.h"
+#include "emu/dspic/peripherals/timing/timer.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
-#include "emu/dspic/peripherals/uart.h"
+#include "emu/dspic/peripherals/serial/uart.h"
 
 #include "emu/dspic/devices/register_bits.h"
-#include "emu/dspic/peripherals/input_capture.h"
+#include "emu/dspic/peripherals/timing/input_capture.h"
 
 #include "protocols/uart_sampling.h"
 

@@ -13,7 +13,7 @@
 //  mode.
 //  4. ICODE shows error, wake-up, overflow and FIFO before buffers.
 
-#include "emu/dspic/peripherals/can_line.h"
+#include "emu/dspic/peripherals/can/can_line.h"
 #include "emu/dspic/peripherals/dma.h"
 
 #include <array>

@@ -34,8 +34,8 @@
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message_state.h"
-#include "emu/dspic/peripherals/i2c_master.h"
 #include "emu/dspic/peripherals/pins.h"
+#include "emu/dspic/peripherals/serial/i2c_master.h"
 #include "emu/dspic/peripherals/surroundings.h"
 
 #include <cstdint>
