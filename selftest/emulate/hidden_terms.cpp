@@ -5,6 +5,7 @@
 #include "gap/pipeline/analyse.h"
 #include "gap/reading/read_experiment.h"
 #include "selftest/emulate/secret_cases.h"
+#include "selftest/grammar/rates.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -180,17 +181,32 @@ std::string term_line(const TermResult& r) {
 }
 
 std::string terms_text(const std::vector<TermResult>& results) {
-    int back = 0, hidden = 0, named = 0, failed = 0;
-    for (const TermResult& r : results) {
-        back += is_back(r.again) ? 1 : 0;
-        hidden += shows_nothing(r.again) ? 1 : 0;
-        named += r.named.empty() ? 0 : 1;
-        failed += r.error.empty() ? 0 : 1;
-    }
+    using selftest::grammar::rate_of;
+    using selftest::grammar::share_text;
+    const auto count = [&](const auto& is) {
+        return static_cast<int>(std::count_if(results.begin(), results.end(), is));
+    };
+    const int all = static_cast<int>(results.size());
+    const int back = count([](const TermResult& r) { return is_back(r.again); });
+    const int unseen = count([](const TermResult& r) { return shows_nothing(r.again); });
+    const int named = count([](const TermResult& r) { return !r.named.empty(); });
+    const int unexplained = count([](const TermResult& r) {
+        return r.decision == decision_name(Decision::Unexplained) ||
+               r.decision == decision_name(Decision::CannotTell);
+    });
+    const int failed = count([](const TermResult& r) { return !r.error.empty(); });
     return fmt::format(
-        "{} robots with a term that is in no catalogue: {} back at the true robot's floor with the "
-        "overlay, {} whose term does not show in what is performed, {} given a name, {} failed\n",
-        results.size(), back, hidden, named, failed);
+        "{} robots with a term that is in no catalogue; shares with 95 % limits\n"
+        "back at the true robot's floor with the overlay  {}\n"
+        "the same without those where the term does not show in what is performed  {}\n"
+        "called unexplained or cannot tell  {}\n"
+        "given a name  {}\n"
+        "failed  {}\n"
+        "The hidden term is a table of the same form as those of an overlay, at the same place in the "
+        "world: that favours the method.\n",
+        all, share_text(rate_of(back, all)), share_text(rate_of(back, all - unseen)),
+        share_text(rate_of(unexplained, all)), share_text(rate_of(named, all)),
+        share_text(rate_of(failed, all)));
 }
 
 }  // namespace puckloop::gap::emulate

@@ -2,7 +2,8 @@
 // Robots with something wrong that is in no catalogue: a term drawn by seed acts in the emulated world
 // (physics/description/extension.h) while the experiment is recorded, and the analysis sees the folder
 // only. The question is whether what it learns without a name, given to the emulator as the overlay that it
-// writes, brings the emulator's runs back to what the robot with the true term itself differs by.
+// writes, brings the emulator's runs back to what the robot with the true term itself differs by. The term is
+// a table of the same form as the overlay's, which favours the method.
 
 #include "gap/verdict/verdict.h"
 #include "physics/description/extension.h"
@@ -38,7 +39,7 @@ struct TermResult {
 TermResult try_term(std::size_t number, const RecordOptions& options);
 
 std::string term_line(const TermResult& result);
-/// How many are back, do not show, were given a name.
+/// Shares that are back, unexplained, given a name, failed, each with its 95 % limits.
 std::string terms_text(const std::vector<TermResult>& results);
 
 }  // namespace puckloop::gap::emulate

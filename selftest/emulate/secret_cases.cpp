@@ -82,7 +82,6 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-/// With the overlay of what was named; the floor is what the true robot itself differs by.
 Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded) {
     constexpr double kBrief = 20.0;  // s of simulated time for each of the three
     const auto file = recorded.scratch / "overlay.toml";
