@@ -32,19 +32,19 @@ struct Tried {
 };
 
 /// A quantity, what it may depend on, and how large the term may be, root mean square in its unit.
-struct Place {
+struct TermSite {
     const char *kind, *quantity;
     double least, most;
     std::vector<Tried> over;
 };
 
-const std::vector<Place>& places() {
+const std::vector<TermSite>& places() {
     static const Tried kSpeed{"speed", -0.13, 0.13}, kTurn{"turn_rate", -3, 3},
         kHeading{"heading", -std::numbers::pi, std::numbers::pi}, kTime{"time", 0, 40},
         kDistance{"distance", 0, 0.11}, kAngle{"angle", -1.1, 1.1}, kGrey{"grey", 0, 1},
         kPitch{"pitch", -0.4, 0.4}, kRoll{"roll", -0.4, 0.4};
     // Sizes: a few to some ten times the noise of each.
-    static const std::vector<Place> all{
+    static const std::vector<TermSite> all{
         {"motion", "motion.forward", 0.002, 0.01, {kSpeed, kTurn, kHeading, kTime}},
         {"motion", "motion.turn", 0.03, 0.15, {kSpeed, kTurn, kHeading, kTime}},
         {"proximity", "proximity.reading", 20, 120, {kDistance, kAngle, kTime}},
@@ -97,10 +97,10 @@ HiddenTerm drawn_term(std::size_t number, std::uint64_t seed) {
     RandomStream random(seed, fmt::format("hidden term {}", number));
     HiddenTerm hidden;
     hidden.kind = kKindsInTurn[number % kKindsInTurn.size()];
-    std::vector<const Place*> own;
-    for (const Place& place : places())
+    std::vector<const TermSite*> own;
+    for (const TermSite& place : places())
         if (place.kind == hidden.kind) own.push_back(&place);
-    const Place& place = *own[random.below(own.size())];
+    const TermSite& place = *own[random.below(own.size())];
     std::vector<Tried> tried;
     for (const Tried& one : place.over)
         if (knows(place.quantity, one.name)) tried.push_back(one);

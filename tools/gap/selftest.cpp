@@ -172,6 +172,8 @@ int self_test(const SelftestRequest& request) {
                                                      {"--cases", request.cases > 0 && !request.beyond}};
         for (const auto& [option, given] : made)
             if (given) throw InputError("", option, "is for made experiments", "no --emulator");
+        if (request.beyond && request.closed_loop)
+            throw InputError("", "--closed-loop", "is for robots changed in secret", "no --beyond");
         return request.beyond ? beyond_test(request) : secret_test(request);
     }
     if (request.beyond) throw InputError("", "--beyond", "is for --emulator", "--emulator");
