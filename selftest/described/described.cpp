@@ -347,11 +347,6 @@ DescribedCase one_case(const Kind& kind, const DescribedTest& test, std::size_t 
     return one;
 }
 
-std::string percent(const grammar::Rate& rate) {
-    return fmt::format("{:.0f} % ({:.0f} to {:.0f}; {} of {})", 100 * rate.share(), 100 * rate.low,
-                       100 * rate.high, rate.hits, rate.of);
-}
-
 template <class Is>
 grammar::Rate rate(const std::vector<DescribedCase>& cases, HiddenIn hidden, const Is& is) {
     int hits = 0, of = 0;
@@ -392,16 +387,16 @@ std::string described_text(const std::vector<DescribedCase>& cases, const Descri
     };
     std::string text = fmt::format("{} cases, {} runs of {} rows each, seed {}; shares with 95 % limits\n",
                                    cases.size(), kRuns, kRows, test.seed);
-    text += fmt::format(
-        "an effect of the kind is hidden: named first {}, another name first {}\n",
-        percent(rate(cases, HiddenIn::Kind, [](const DescribedCase& one) { return one.first_right(); })),
-        percent(rate(cases, HiddenIn::Kind, is_wrong)));
+    text += fmt::format("an effect of the kind is hidden: named first {}, another name first {}\n",
+                        grammar::share_text(rate(cases, HiddenIn::Kind,
+                                                 [](const DescribedCase& one) { return one.first_right(); })),
+                        grammar::share_text(rate(cases, HiddenIn::Kind, is_wrong)));
     text += fmt::format("nothing is hidden: no effect {}, a name {}\n",
-                        percent(rate(cases, HiddenIn::Nothing, said("no_effect"))),
-                        percent(rate(cases, HiddenIn::Nothing, is_wrong)));
+                        grammar::share_text(rate(cases, HiddenIn::Nothing, said("no_effect"))),
+                        grammar::share_text(rate(cases, HiddenIn::Nothing, is_wrong)));
     text += fmt::format("something else is hidden: unexplained {}, a name {}\n",
-                        percent(rate(cases, HiddenIn::Outside, said("unexplained"))),
-                        percent(rate(cases, HiddenIn::Outside, is_wrong)));
+                        grammar::share_text(rate(cases, HiddenIn::Outside, said("unexplained"))),
+                        grammar::share_text(rate(cases, HiddenIn::Outside, is_wrong)));
     double seconds = 0.0;
     for (const DescribedCase& one : cases)
         seconds = std::max(seconds, one.wall_s);

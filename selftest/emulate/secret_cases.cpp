@@ -44,21 +44,6 @@ std::string add_unknown(WrittenExperiment& recorded, RandomStream& random) {
     return fmt::format("{}{} ({:.1f} times the noise)", site.text(), field.text, reached);
 }
 
-/// With the overlay of what was named; the floor is what the true robot itself differs by.
-Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded) {
-    constexpr double kBrief = 20.0;  // s of simulated time for each of the three
-    const auto file = recorded.scratch / "overlay.toml";
-    std::ofstream(file) << overlay_toml(measured, verdict);
-    RerunOptions how;
-    how.tools = recorded.tools;
-    how.overlay = file;
-    how.scratch = recorded.scratch / "again";
-    how.seed = recorded.seed + 1;
-    how.longest = recorded.brief ? kBrief : 0.0;  // an effect may show in a few runs only
-    how.truth = recorded.robot;
-    return rerun(measured, verdict, how);
-}
-
 constexpr std::uint64_t kSeeds = 1'000'000'000;
 
 /// Errors with the overlay are no more than this over those of the true robot, whose chance may be more.
@@ -88,6 +73,37 @@ Shown shown_by(const Rerun& again) {
     return shown;
 }
 
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+}  // namespace
+
+Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded) {
+    constexpr double kBrief = 20.0;  // s of simulated time for each of the three
+    const auto file = recorded.scratch / "overlay.toml";
+    std::ofstream(file) << overlay_toml(measured, verdict);
+    RerunOptions how;
+    how.tools = recorded.tools;
+    how.overlay = file;
+    how.scratch = recorded.scratch / "again";
+    how.seed = recorded.seed + 1;
+    how.longest = recorded.brief ? kBrief : 0.0;  // an effect may show in a few runs only
+    how.truth = recorded.robot;
+    return rerun(measured, verdict, how);
+}
+
+bool is_back(const Rerun& again) {
+    return !again.observables.empty() && shown_by(again).back();
+}
+
+bool shows_nothing(const Rerun& again) {
+    return !again.observables.empty() && shown_by(again).nothing();
+}
+
 std::string again_text(const Rerun& again) {
     if (!again.asked) return {};
     std::string text = fmt::format("{:>13}performed again", "");
@@ -103,15 +119,6 @@ std::string again_text(const Rerun& again) {
                                                   : "NOT back: " + shown.left;
     return text + fmt::format("\n{:>13}{}\n", "", verdict);
 }
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words)
-        text += (text.empty() ? "" : " ") + word;
-    return text;
-}
-
-}  // namespace
 
 SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOptions& given) {
     const Secret& secret = secrets()[number];

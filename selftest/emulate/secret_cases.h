@@ -26,6 +26,16 @@ struct SecretResult {
 /// `options.scratch` and, unless they are kept, removed.
 SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOptions& options);
 
+/// Performs a measured experiment again with the overlay of its verdict, beside the simulator as it is and
+/// the true robot (`recorded.robot`), whose own differences are the floor.
+Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded);
+/// Were observables beyond the true robot's floor as the simulator is, and is none of them with the overlay?
+bool is_back(const Rerun& again);
+/// Was something performed, and none beyond the floor without the overlay and with it?
+bool shows_nothing(const Rerun& again);
+/// Errors before, after and of the true robot, in two lines.
+std::string again_text(const Rerun& again);
+
 /// What was changed and what was said, with the first parameters; ends with a line feed.
 std::string secret_line(const SecretResult& result);
 /// A table for people.

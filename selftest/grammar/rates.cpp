@@ -39,6 +39,12 @@ Rate rate_of(int hits, int of) {
     return rate;
 }
 
+std::string share_text(const Rate& rate) {
+    if (rate.of == 0) return "no case";
+    return fmt::format("{:.0f} % ({:.0f} to {:.0f}; {} of {})", 100 * rate.share(), 100 * rate.low,
+                       100 * rate.high, rate.hits, rate.of);
+}
+
 bool Target::met() const {
     return rate.of == 0 || (rate.share() >= least && rate.share() <= most && rate.high <= highest);
 }

@@ -16,6 +16,8 @@ struct Rate {
     double share() const { return of == 0 ? 0.0 : static_cast<double>(hits) / of; }
 };
 Rate rate_of(int hits, int of);
+/// "88 % (73 to 96; 35 of 40)": share, limits, counts.
+std::string share_text(const Rate& rate);
 
 struct Target {
     std::string what;

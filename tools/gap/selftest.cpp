@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "gap/kinds/read_kind.h"
 #include "selftest/described/described.h"
+#include "selftest/emulate/hidden_terms.h"
 #include "selftest/emulate/secret_cases.h"
 #include "selftest/run_cases.h"
 #include "tools/cli/check.h"
@@ -25,6 +26,7 @@ namespace st = gap::selftest;
 constexpr std::size_t kQuick = 24;
 constexpr std::size_t kDrawn = 56, kAllDrawn = 1120;  // two and forty of each kind and class
 constexpr std::size_t kDescribed = 60, kQuickDescribed = 6;
+constexpr std::size_t kBeyond = 40;
 constexpr std::uint64_t kMostCases = 100'000;
 constexpr double kMostWorkers = 256;
 
@@ -34,6 +36,7 @@ struct SelftestRequest {
     unsigned workers = 2;
     std::string kind, of;
     bool grammar = false, full = false, draw_runs = false, ask_all = false, power = false;
+    bool beyond = false;
     bool quick = false, json = false, keep = false, emulator = false, closed_loop = false, seed_given = false;
     std::filesystem::path scratch, svg;
     std::vector<std::string> pool;
@@ -126,6 +129,33 @@ int described_self_test(const SelftestRequest& request) {
     return st::described_met(cases) ? 0 : 1;
 }
 
+/// Robots with a term that is in no catalogue; status 1 where one could not be recorded or analysed.
+int beyond_test(const SelftestRequest& request) {
+    namespace em = gap::emulate;
+    em::RecordOptions options;
+    options.tools = emulation_tools();
+    options.seed = request.seed_given ? request.seed : fresh_seed();
+    fmt::print(stderr, "seed {}\n", options.seed);
+    options.brief = request.quick;
+    options.keep = request.keep;
+    std::vector<em::TermResult> results;
+    for (std::size_t k = 0; k < (request.cases > 0 ? request.cases : kBeyond); ++k) {
+        if (!request.kind.empty() && request.kind != em::drawn_term(k, options.seed).kind) continue;
+        if (!request.only.empty() &&
+            std::find(request.only.begin(), request.only.end(), k) == request.only.end())
+            continue;
+        options.scratch = scratch_of(request) / fmt::format("term{:02}", k);
+        refuse_foreign_files(options.scratch);
+        results.push_back(em::try_term(k, options));
+        fmt::print(stderr, "{:>3} {}", k, em::term_line(results.back()));
+    }
+    if (results.empty()) throw InputError("", "gap selftest", "no case is of this kind and number");
+    for (const em::TermResult& result : results)
+        fmt::print("{}", em::term_line(result));
+    fmt::print("{}", em::terms_text(results));
+    return std::all_of(results.begin(), results.end(), [](const auto& r) { return r.error.empty(); }) ? 0 : 1;
+}
+
 int self_test(const SelftestRequest& request) {
     if (gap::names_kind_file(request.kind)) return described_self_test(request);
     const std::pair<const char*, bool> drawn[] = {
@@ -137,12 +167,16 @@ int self_test(const SelftestRequest& request) {
         if (given && !request.grammar)
             throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
     if (request.emulator) {
-        const std::pair<const char*, bool> made[] = {
-            {"--grammar", request.grammar}, {"--json", request.json}, {"--cases", request.cases > 0}};
+        const std::pair<const char*, bool> made[] = {{"--grammar", request.grammar},
+                                                     {"--json", request.json},
+                                                     {"--cases", request.cases > 0 && !request.beyond}};
         for (const auto& [option, given] : made)
             if (given) throw InputError("", option, "is for made experiments", "no --emulator");
-        return secret_test(request);
+        if (request.beyond && request.closed_loop)
+            throw InputError("", "--closed-loop", "is for robots changed in secret", "no --beyond");
+        return request.beyond ? beyond_test(request) : secret_test(request);
     }
+    if (request.beyond) throw InputError("", "--beyond", "is for --emulator", "--emulator");
     if (request.closed_loop) throw InputError("", "--closed-loop", "is for --emulator", "--emulator");
     if (request.grammar) {
         if (request.quick) throw InputError("", "--quick", "is not for --grammar", "--cases N");
@@ -236,6 +270,9 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_flag("--keep", request->keep, "leave the cases' folders");
     command->add_flag("--emulator", request->emulator,
                       "robots changed in secret and recorded on the emulator, in place of made experiments");
+    command->add_flag("--beyond", request->beyond,
+                      "of --emulator: terms that are in no catalogue act in the robot's world; are runs with "
+                      "the overlay of what is learnt back at its floor? (--cases, default 40)");
     command->add_flag("--closed-loop", request->closed_loop,
                       "of --emulator: typed values and a recording no finer than the fitted model, in place "
                       "of values drawn from their published ranges with a fresh seed");
