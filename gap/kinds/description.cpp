@@ -4,6 +4,19 @@
 
 namespace puckloop::gap {
 
+std::vector<std::size_t> DescribedObservable::formulas() const {
+    std::vector<std::size_t> all{mean};
+    for (const auto scatter : {factor, sd})
+        if (scatter) all.push_back(*scatter);
+    return all;
+}
+
+std::optional<std::size_t> Description::column(std::string_view named) const {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        if (columns[c].name == named) return c;
+    return std::nullopt;
+}
+
 std::vector<std::string> Description::variables() const {
     std::vector<std::string> names;
     for (const ColumnInfo& column : columns)

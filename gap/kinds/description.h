@@ -15,6 +15,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::gap {
@@ -43,6 +44,9 @@ struct DescribedObservable {
     std::size_t mean = 0;                   ///< in Description::formulas, as the next two
     std::optional<std::size_t> factor, sd;  ///< noise is so many times larger; sd added in quadrature
     Instrument instrument{};
+
+    /// Those of its formulas that there are.
+    std::vector<std::size_t> formulas() const;
 };
 
 struct Description {
@@ -61,6 +65,8 @@ struct Description {
     std::vector<DescribedObservable> observables;
     std::vector<Effect> effects;
 
+    /// Place of the column of this name; nothing if there is none.
+    std::optional<std::size_t> column(std::string_view name) const;
     /// Of all variables, in the order in which formulas number them.
     std::vector<std::string> variables() const;
     /// What a variable is: a place in columns, parameters or formulas.

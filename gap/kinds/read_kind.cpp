@@ -237,9 +237,8 @@ class KindFile {
     }
 
     const ColumnInfo* own_column(const std::string& name) const {
-        for (const ColumnInfo& column : kind_.columns)
-            if (column.name == name) return &column;
-        return nullptr;
+        const auto place = kind_.column(name);
+        return place ? &kind_.columns[*place] : nullptr;
     }
 
     void read_parameter(const Entry& entry) {
@@ -309,18 +308,17 @@ class KindFile {
     }
 
     void read_named_formulas(const std::vector<Entry>& entries) {
-        std::vector<Entry> order = entries;
-        for (const Entry& one : order) {
+        for (const Entry& one : entries) {
             take_name(one.name, "formula", one.value->line);
             if (!one.value->is_string())
                 fail(one.value->line, fmt::format("formula {} is no text", one.name), "\"a formula\"");
         }
         // Compiled twice: to find what each has, then in an order in which each comes after what it has.
-        compile(order);
+        compile(entries);
         std::vector<Entry> sorted;
-        std::vector<char> state(order.size(), 0);  // 1: being visited, 2: done
-        for (std::size_t f = 0; f < order.size(); ++f)
-            visit(f, order, state, sorted);
+        std::vector<char> state(entries.size(), 0);  // 1: being visited, 2: done
+        for (std::size_t f = 0; f < entries.size(); ++f)
+            visit(f, entries, state, sorted);
         compile(sorted);
         kind_.named_formulas = sorted.size();
     }
@@ -353,7 +351,7 @@ class KindFile {
     }
 
     void read_observable(const Entry& entry) {
-        const auto column = static_cast<std::size_t>(own_column(entry.name) - kind_.columns.data());
+        const std::size_t column = *kind_.column(entry.name);
         if (kind_.columns[column].role != Role::Observable) return;
         Reader reader(file_, "column " + entry.name, *entry.value);
         DescribedObservable observable;
@@ -400,7 +398,8 @@ class KindFile {
     void check_use() {
         std::set<std::size_t> used;
         for (std::size_t f = kind_.named_formulas; f < kind_.formulas.size(); ++f)
-            used.merge(as_set(kind_.all_used(f)));
+            for (const std::size_t index : kind_.all_used(f))
+                used.insert(index);
         const std::size_t first_parameter = kind_.columns.size(),
                           first_formula = first_parameter + kind_.parameters.size();
         for (std::size_t f = 0; f < kind_.named_formulas; ++f)
@@ -417,13 +416,9 @@ class KindFile {
             if (used.contains(c) && !kind_.absent.contains(c)) kind_.columns[c].required = true;
         for (const DescribedParameter& parameter : kind_.parameters)
             if (!parameter.per.empty()) {
-                const auto c = static_cast<std::size_t>(own_column(parameter.per) - kind_.columns.data());
+                const std::size_t c = *kind_.column(parameter.per);
                 if (!kind_.absent.contains(c)) kind_.columns[c].required = true;
             }
-    }
-
-    static std::set<std::size_t> as_set(const std::vector<std::size_t>& all) {
-        return {all.begin(), all.end()};
     }
 
     void read_effect(const Entry& entry) {

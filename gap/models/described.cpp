@@ -107,22 +107,14 @@ class DescribedModel final : public Model {
         const auto add = [&](std::size_t one) {
             if (std::ranges::find(columns, one) == columns.end()) columns.push_back(one);
         };
-        for (const auto formula : {std::optional(observable.mean), observable.factor, observable.sd}) {
-            if (!formula) continue;
-            for (const std::size_t index : kind_.all_used(*formula)) {
+        for (const std::size_t formula : observable.formulas())
+            for (const std::size_t index : kind_.all_used(formula)) {
                 const auto [what, place] = kind_.variable(index);
                 if (what == Variable::Column) add(place);
                 if (what == Variable::Parameter && !kind_.parameters[place].per.empty())
-                    add(column_named(kind_.parameters[place].per));
+                    add(*kind_.column(kind_.parameters[place].per));
             }
-        }
         return columns;
-    }
-
-    std::size_t column_named(std::string_view name) const {
-        for (std::size_t c = 0; c < kind_.columns.size(); ++c)
-            if (kind_.columns[c].name == name) return c;
-        return 0;
     }
 
     void add_observable(const Experiment& experiment, const DescribedObservable& described) {
@@ -142,7 +134,7 @@ class DescribedModel final : public Model {
         part.place.resize(kind_.parameters.size());
         for (std::size_t p = 0; p < kind_.parameters.size(); ++p) {
             if (kind_.parameters[p].per.empty()) continue;
-            const auto& numbers = part.column[column_named(kind_.parameters[p].per)];
+            const auto& numbers = part.column[*kind_.column(kind_.parameters[p].per)];
             for (const double number : numbers)
                 part.place[p].push_back(first_[p] + thing(p, number));
         }
@@ -162,10 +154,9 @@ class DescribedModel final : public Model {
     /// Computes what no parameter is in, and lists what is to be computed each time.
     void fix(Part& part, const DescribedObservable& described) {
         std::vector<char> wanted(kind_.formulas.size(), 0);
-        for (const auto formula : {std::optional(described.mean), described.factor, described.sd}) {
-            if (!formula) continue;
-            wanted[*formula] = 1;
-            for (const std::size_t index : kind_.all_used(*formula))
+        for (const std::size_t formula : described.formulas()) {
+            wanted[formula] = 1;
+            for (const std::size_t index : kind_.all_used(formula))
                 if (const auto [what, place] = kind_.variable(index); what == Variable::Formula)
                     wanted[place] = 1;
         }

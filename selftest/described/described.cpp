@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace puckloop::gap::selftest {
@@ -353,13 +354,9 @@ grammar::Rate rate(const std::vector<DescribedCase>& cases, HiddenIn hidden, con
     for (const DescribedCase& one : cases) {
         if (one.hidden != hidden) continue;
         ++of;
-        hits += is(one) ? 1 : 0;
+        hits += std::invoke(is, one) ? 1 : 0;
     }
     return grammar::rate_of(hits, of);
-}
-
-bool is_wrong(const DescribedCase& one) {
-    return one.wrong();
 }
 
 }  // namespace
@@ -388,15 +385,14 @@ std::string described_text(const std::vector<DescribedCase>& cases, const Descri
     std::string text = fmt::format("{} cases, {} runs of {} rows each, seed {}; shares with 95 % limits\n",
                                    cases.size(), kRuns, kRows, test.seed);
     text += fmt::format("an effect of the kind is hidden: named first {}, another name first {}\n",
-                        grammar::share_text(rate(cases, HiddenIn::Kind,
-                                                 [](const DescribedCase& one) { return one.first_right(); })),
-                        grammar::share_text(rate(cases, HiddenIn::Kind, is_wrong)));
+                        grammar::share_text(rate(cases, HiddenIn::Kind, &DescribedCase::first_right)),
+                        grammar::share_text(rate(cases, HiddenIn::Kind, &DescribedCase::wrong)));
     text += fmt::format("nothing is hidden: no effect {}, a name {}\n",
                         grammar::share_text(rate(cases, HiddenIn::Nothing, said("no_effect"))),
-                        grammar::share_text(rate(cases, HiddenIn::Nothing, is_wrong)));
+                        grammar::share_text(rate(cases, HiddenIn::Nothing, &DescribedCase::wrong)));
     text += fmt::format("something else is hidden: unexplained {}, a name {}\n",
                         grammar::share_text(rate(cases, HiddenIn::Outside, said("unexplained"))),
-                        grammar::share_text(rate(cases, HiddenIn::Outside, is_wrong)));
+                        grammar::share_text(rate(cases, HiddenIn::Outside, &DescribedCase::wrong)));
     double seconds = 0.0;
     for (const DescribedCase& one : cases)
         seconds = std::max(seconds, one.wall_s);

@@ -1,7 +1,8 @@
 #pragma once
 // What the tables of system calls share (syscalls.h).
 
-#include <cerrno>
+#include "linuxboard/shim/preload/host/failure.h"
+
 #include <type_traits>
 
 namespace puckloop::shim {
@@ -21,9 +22,7 @@ struct Argument {
 
 /// The result of a call whose function returns its error: 0, or -1 and errno.
 inline long failed(int error) {
-    if (error == 0) return 0;
-    errno = error;
-    return -1;
+    return error == 0 ? 0 : fail(error);
 }
 
 }  // namespace puckloop::shim
