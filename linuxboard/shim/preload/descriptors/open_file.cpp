@@ -1,4 +1,5 @@
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 
 #include "base/random.h"
 #include "linuxboard/shim/preload/host/host.h"
@@ -61,24 +62,19 @@ OpenFile* adopt_descriptor(int fd) {
 int open_device(int device, int flags) {
     if (device == kForbiddenDevice) {
         host_complain("puckloop shim: a thread that was not made by pthread_create() has no devices\n");
-        errno = ENXIO;
-        return -1;
+        return fail(ENXIO);
     }
     mark_call("open");
     const int refused = (flags & O_DIRECTORY) != 0                           ? ENOTDIR
                         : (flags & (O_CREAT | O_EXCL)) == (O_CREAT | O_EXCL) ? EEXIST
                         : (flags & O_DIRECT) != 0 && device != kRandomDevice ? EINVAL
                                                                              : 0;
-    if (refused != 0) {
-        errno = refused;
-        return -1;
-    }
+    if (refused != 0) return fail(refused);
     const int fd = REAL(open)("/dev/null", flags & (O_ACCMODE | O_CLOEXEC | O_PATH));
     if (fd < 0 || (flags & O_PATH) != 0) return fd;  // a path only: nothing is opened
     if (fd >= kMostDescriptors) {
         REAL(close)(fd);
-        errno = EMFILE;
-        return -1;
+        return fail(EMFILE);
     }
     auto* file = new OpenFile;
     file->flags = flags & kKeptFlags;
@@ -101,8 +97,7 @@ int open_device(int device, int flags) {
             const int error = errno;
             delete file;
             REAL(close)(fd);
-            errno = error;
-            return -1;
+            return fail(error);
         }
     }
     file->references = 1;
@@ -185,10 +180,7 @@ std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
     if (file.kind == OpenFile::Kind::Random) return read_random(buffer, size);
     if (file.kind == OpenFile::Kind::Socket) return size == 0 ? 0 : read_socket(file, buffer, size, 0);
     charge(page().charges.device);
-    if ((file.flags & O_ACCMODE) == O_WRONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
-        errno = EBADF;
-        return -1;
-    }
+    if ((file.flags & O_ACCMODE) == O_WRONLY || (file.flags & O_ACCMODE) == O_ACCMODE) return fail(EBADF);
     if (!is_user_range(buffer, size)) return -1;
     if (file.kind == OpenFile::Kind::I2c) return read_i2c(file, buffer, size);
     if (file.kind == OpenFile::Kind::Video) return read_video(file, buffer, size);
@@ -203,15 +195,11 @@ std::int64_t write_device(OpenFile& file, const void* data, std::size_t size) {
     if (file.kind == OpenFile::Kind::Random) return static_cast<std::int64_t>(size);
     if (file.kind == OpenFile::Kind::Socket) return write_socket(file, data, size, 0);
     charge(page().charges.device);
-    if ((file.flags & O_ACCMODE) == O_RDONLY || (file.flags & O_ACCMODE) == O_ACCMODE) {
-        errno = EBADF;
-        return -1;
-    }
+    if ((file.flags & O_ACCMODE) == O_RDONLY || (file.flags & O_ACCMODE) == O_ACCMODE) return fail(EBADF);
     if (!is_user_range(data, size)) return -1;
     if (file.kind == OpenFile::Kind::I2c) return write_i2c(file, data, size);
     if (file.kind == OpenFile::Kind::Video) {
-        errno = EINVAL;  // a capture device takes none
-        return -1;
+        return fail(EINVAL);  // a capture device takes none
     }
     if (size == 0) return 0;
     std::int64_t written = 0;

@@ -1,6 +1,7 @@
 // POSIX asynchronous reads and writes. The C library's own have threads that wait in the host, outside of
 // simulated time; here each operation is a thread of the program.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/board_clock.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
@@ -113,18 +114,12 @@ template <typename Done>
 int await(Time deadline, Done done) {
     charge(page().charges.sync);
     while (!done()) {
-        if (now() >= deadline) {
-            errno = EAGAIN;
-            return -1;
-        }
+        if (now() >= deadline) return fail(EAGAIN);
         WaitOptions options;
         options.deadline = deadline;
         options.interruptible = true;
         options.cancellable = true;
-        if (park(&operation_key, options) == Wake::Signal) {
-            errno = EINTR;
-            return -1;
-        }
+        if (park(&operation_key, options) == Wake::Signal) return fail(EINTR);
     }
     return 0;
 }
@@ -146,20 +141,14 @@ SHIM_EXPORT int aio_write(aiocb* block) noexcept {
 
 SHIM_EXPORT int aio_fsync(int operation, aiocb* block) noexcept {
     if (!active()) return REAL(aio_fsync)(operation, block);
-    if (operation != O_SYNC && operation != O_DSYNC) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (operation != O_SYNC && operation != O_DSYNC) return fail(EINVAL);
     return begin(block, operation == O_SYNC ? kSync : kDataSync) ? 0 : -1;
 }
 
 SHIM_EXPORT int aio_suspend(const aiocb* const list[], int count, const timespec* timeout) {
     if (!active()) return REAL(aio_suspend)(list, count, timeout);
     mark_call("aio_suspend");
-    if (count < 0 || (timeout != nullptr && !is_valid(*timeout))) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (count < 0 || (timeout != nullptr && !is_valid(*timeout))) return fail(EINVAL);
     const Time deadline = timeout == nullptr ? kNever : time_after(from_timespec(*timeout));
     return await(deadline, [&] {
         bool any = false;
@@ -176,14 +165,8 @@ SHIM_EXPORT int aio_suspend(const aiocb* const list[], int count, const timespec
 SHIM_EXPORT int aio_cancel(int fd, aiocb* block) noexcept {
     if (!active()) return REAL(aio_cancel)(fd, block);
     charge(page().charges.sync);
-    if (fcntl(fd, F_GETFL) < 0) {
-        errno = EBADF;
-        return -1;
-    }
-    if (block != nullptr && block->aio_fildes != fd) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (fcntl(fd, F_GETFL) < 0) return fail(EBADF);
+    if (block != nullptr && block->aio_fildes != fd) return fail(EINVAL);
     const auto& all = under_way();
     const bool any = std::any_of(all.begin(), all.end(), [&](const aiocb* one) {
         return block != nullptr ? one == block : one->aio_fildes == fd;
@@ -194,10 +177,7 @@ SHIM_EXPORT int aio_cancel(int fd, aiocb* block) noexcept {
 SHIM_EXPORT int lio_listio(int mode, aiocb* const list[], int count, sigevent* notice) noexcept {
     if (!active()) return REAL(lio_listio)(mode, list, count, notice);
     mark_call("lio_listio");
-    if ((mode != LIO_WAIT && mode != LIO_NOWAIT) || count < 0) {
-        errno = EINVAL;
-        return -1;
-    }
+    if ((mode != LIO_WAIT && mode != LIO_NOWAIT) || count < 0) return fail(EINVAL);
     const auto batch = std::make_shared<Batch>();
     batch->notice.sigev_notify = SIGEV_NONE;
     if (mode == LIO_NOWAIT && notice != nullptr) batch->notice = *notice;
@@ -221,8 +201,7 @@ SHIM_EXPORT int lio_listio(int mode, aiocb* const list[], int count, sigevent* n
                             return is_asked(block) && block->__error_code != 0;
                         });
     if (all_begun && !failed) return 0;
-    errno = EIO;
-    return -1;
+    return fail(EIO);
 }
 
 // On machines of 64 bits the calls of both sizes are the same.

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
 #include "linuxboard/shim/preload/descriptors/video_names.h"
 #include "linuxboard/shim/preload/files/shared_calls.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
@@ -82,10 +83,7 @@ int open_named_pipe(const char* path, int flags) {
         options.deadline = time_after(kExternalPeriod);
         options.interruptible = true;
         options.cancellable = true;
-        if (park(external_key(), options) == Wake::Signal && !self()->restarts) {
-            errno = EINTR;
-            return -1;
-        }
+        if (park(external_key(), options) == Wake::Signal && !self()->restarts) return fail(EINTR);
     }
 }
 
@@ -184,10 +182,7 @@ SHIM_EXPORT int creat64(const char* path, mode_t mode) {
 }
 
 SHIM_EXPORT int close(int fd) {
-    if (active() && is_link_descriptor(fd)) {
-        errno = EBADF;
-        return -1;
-    }
+    if (active() && is_link_descriptor(fd)) return fail(EBADF);
     if (open_file(fd) != nullptr) release_file(fd);
     if (!active()) return REAL(close)(fd);
     const bool was_internal = is_internal(fd);
@@ -218,10 +213,7 @@ SHIM_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
 }
 
 SHIM_EXPORT int dup(int fd) noexcept {
-    if (active() && is_link_descriptor(fd)) {
-        errno = EBADF;
-        return -1;
-    }
+    if (active() && is_link_descriptor(fd)) return fail(EBADF);
     const int copy = REAL(dup)(fd);
     if (copy >= 0 && active()) copied(fd, copy);
     return copy;
@@ -259,10 +251,7 @@ int lock_device(int command, long argument) {
     struct flock lock {};
     auto* const theirs = reinterpret_cast<struct flock*>(argument);
     if (!get_from_program(lock, theirs)) return -1;
-    if (lock.l_type != F_RDLCK && lock.l_type != F_WRLCK && lock.l_type != F_UNLCK) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (lock.l_type != F_RDLCK && lock.l_type != F_WRLCK && lock.l_type != F_UNLCK) return fail(EINVAL);
     if (command != F_GETLK && command != F_OFD_GETLK) return 0;
     lock.l_type = F_UNLCK;
     return put_to_program(theirs, lock) ? 0 : -1;
@@ -297,8 +286,7 @@ int control_owner(int fd, int command, long argument, decltype(&::fcntl) real) {
 int control(int fd, int command, long argument, decltype(&::fcntl) real) {
     if (active() && is_link_descriptor(fd)) {
         if (command == F_SETFD) return 0;
-        errno = EBADF;
-        return -1;
+        return fail(EBADF);
     }
     OpenFile* file = open_file(fd);
     switch (file != nullptr ? command : -1) {
@@ -306,10 +294,7 @@ int control(int fd, int command, long argument, decltype(&::fcntl) real) {
         return file->flags | kLargeFile;
     case F_SETFL:
         charge(page().charges.device);
-        if ((argument & O_DIRECT) != 0) {
-            errno = EINVAL;
-            return -1;
-        }
+        if ((argument & O_DIRECT) != 0) return fail(EINVAL);
         if ((argument & O_ASYNC) != 0) note("%s: O_ASYNC (SIGIO) is not supported", file->path);
         file->flags = (file->flags & ~kSettableFlags) | static_cast<int>(argument & kSettableFlags);
         return 0;
@@ -473,8 +458,7 @@ SHIM_EXPORT ssize_t writev(int fd, const iovec* theirs, int count) {
         const std::size_t before = data.size();
         if (readable_bytes(part.iov_base, size) < size) {
             if (before > 0) break;
-            errno = EFAULT;
-            return -1;
+            return fail(EFAULT);
         }
         data.resize(before + size);
         copy_from_program(data.data() + before, part.iov_base, size);

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/descriptors/device_numbers.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 
@@ -71,8 +72,7 @@ ProcessPath on_host(const char* path, const char* name) {
 }
 
 int refused_change() {
-    errno = EPERM;
-    return -1;
+    return fail(EPERM);
 }
 }  // namespace
 
@@ -208,8 +208,7 @@ SHIM_EXPORT int renameat2(int from_folder, const char* from, int to_folder, cons
 }
 SHIM_EXPORT int truncate(const char* path, off_t size) noexcept {
     if (device_name(path) == nullptr) return REAL(truncate)(path, size);
-    errno = EINVAL;
-    return -1;
+    return fail(EINVAL);
 }
 SHIM_EXPORT int truncate64(const char* path, off64_t size) noexcept {
     return truncate(path, size);

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/preload/files/shared_calls.h"
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/scheduler/board_clock.h"
 #include "linuxboard/shim/preload/scheduler/outside_news.h"
@@ -71,10 +72,7 @@ bool never_waits(const sembuf* operations, std::size_t count) {
 
 int operate(int set, sembuf* theirs, std::size_t count, Time deadline) {
     constexpr std::size_t kMost = 500;  // SEMOPM
-    if (count > kMost) {
-        errno = E2BIG;
-        return -1;
-    }
+    if (count > kMost) return fail(E2BIG);
     std::vector<sembuf> operations(count);
     if (!copy_from_program(operations.data(), theirs, count * sizeof(sembuf))) return -1;
     if (never_waits(operations.data(), count)) return REAL(semop)(set, theirs, count);
@@ -142,11 +140,9 @@ int lock_file(int fd, int command, off64_t length) {
     case F_TEST:
         if (fcntl(fd, F_GETLK, &lock) != 0) return -1;
         if (lock.l_type == F_UNLCK) return 0;
-        errno = EACCES;
-        return -1;
+        return fail(EACCES);
     default:
-        errno = EINVAL;
-        return -1;
+        return fail(EINVAL);
     }
 }
 }  // namespace

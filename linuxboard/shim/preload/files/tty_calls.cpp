@@ -120,8 +120,7 @@ int set_kernel_termios2(const OpenFile& file, int when, const KernelTermios2& in
         }
         if (speed == kOtherBaud) {
             note("%s: the rate %u baud is not supported", file.path, in.c_ospeed);
-            errno = EINVAL;
-            return -1;
+            return fail(EINVAL);
         }
         plain.c_cflag = (plain.c_cflag & ~static_cast<tcflag_t>(CBAUD)) | speed;
     }
@@ -145,8 +144,7 @@ int counters(const OpenFile& file, serial_icounter_struct& out) {
 
 int unsupported(const OpenFile& file, unsigned long request, const void* caller, int error) {
     note("%s: ioctl 0x%lx is not supported (in %s)", file.path, request, place_of(caller));
-    errno = error;
-    return -1;
+    return fail(error);
 }
 
 /// The older struct of TCGETA and TCSETA.
@@ -373,8 +371,7 @@ int device_ioctl(OpenFile& file, unsigned long request, void* argument, const vo
     case OpenFile::Kind::Random:
         break;
     }
-    errno = ENOTTY;
-    return -1;
+    return fail(ENOTTY);
 }
 
 /// The serial port behind a descriptor; nullptr and ENOTTY for our other devices.
@@ -422,10 +419,7 @@ SHIM_EXPORT int tcsetattr(int fd, int when, const termios* settings) noexcept {
     NOT_A_TTY(file)
     mark_call("tcsetattr");
     termios wanted;
-    if (when < TCSANOW || when > TCSAFLUSH) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (when < TCSANOW || when > TCSAFLUSH) return fail(EINVAL);
     return get_from_program(wanted, settings) ? set_termios(*file, when, wanted) : -1;
 }
 

@@ -1,4 +1,5 @@
 #include "linuxboard/shim/preload/host/raw_calls.h"
+#include "linuxboard/shim/preload/host/failure.h"
 
 #include "linuxboard/shim/preload/host/host.h"
 
@@ -122,8 +123,7 @@ int raw_lstat(const char* path, struct stat* status) {
 
 int raw_fstat(int fd, struct stat* status) {
     if (fd >= 0) return raw_fstatat(fd, "", status, AT_EMPTY_PATH);
-    errno = EBADF;
-    return -1;
+    return fail(EBADF);
 }
 
 // Of programs that were linked with a C library older than 2.33.

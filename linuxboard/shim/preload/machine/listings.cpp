@@ -6,6 +6,7 @@
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/descriptors/process_paths.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
@@ -143,10 +144,7 @@ ssize_t own_entries(Folder folder, int fd, off_t place, void* theirs, std::size_
         used += length;
         own = own_entry(folder, place);
     }
-    if (used == 0 && own.place >= 0) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (used == 0 && own.place >= 0) return fail(EINVAL);
     if (REAL(lseek)(fd, kOwnEntries + place, SEEK_SET) < 0) return 0;
     return copy_to_program(theirs, list, used) ? static_cast<ssize_t>(used) : -1;
 }

@@ -5,6 +5,7 @@
 // in, so that res_search() asks for the name as it is.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/network/sockets.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
@@ -41,15 +42,11 @@ ssize_t await_answer(int fd, std::uint16_t id, unsigned char* answer, std::size_
         if (size < 0) return -1;
         if (size >= NS_HFIXEDSZ && ns_get16(answer) == id) return size;
     }
-    errno = ETIMEDOUT;
-    return -1;
+    return fail(ETIMEDOUT);
 }
 
 int exchange(const unsigned char* question, int size, unsigned char* answer, int room) {
-    if (size < NS_HFIXEDSZ || room < NS_HFIXEDSZ) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (size < NS_HFIXEDSZ || room < NS_HFIXEDSZ) return fail(EINVAL);
     const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (fd < 0) return -1;
     sockaddr_in server{};

@@ -1,6 +1,7 @@
 // Processes made otherwise than by fork(): what is a plain copy is conducted as fork() is, what shares memory
 // or descriptors with its parent is refused by name, since nobody could conduct it.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
@@ -71,10 +72,7 @@ SHIM_EXPORT int clone(int (*function)(void*), void* stack, int flags, void* argu
     void* const child_number = va_arg(list, void*);
     va_end(list);
     if (!active()) return REAL(clone)(function, stack, flags, argument, parent_number, tls, child_number);
-    if (function == nullptr || stack == nullptr) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (function == nullptr || stack == nullptr) return fail(EINVAL);
     // The copy has a stack of its own already: the one that it was given is left alone.
     const pid_t child = clone_process("clone()", static_cast<unsigned>(flags) & ~unsigned{CSIGNAL},
                                       flags & CSIGNAL, nullptr, parent_number, child_number);

@@ -1,6 +1,7 @@
 // exec(): the program that follows in this process goes on in simulated time, with the devices and the alarms
 // of the one before it.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
@@ -80,10 +81,7 @@ int run_program(const char* path, char* const* arguments, char* const* environme
     if (!active()) return REAL(execve)(path, arguments, environment);
     mark_call("execve");
     charge(page().charges.thread);
-    if (!is_text(path) || !is_list(environment)) {
-        errno = EFAULT;
-        return -1;
-    }
+    if (!is_text(path) || !is_list(environment)) return fail(EFAULT);
     can_be_conducted(path, false);
     const std::string left = leave(true);
     wire::Request request;
@@ -93,16 +91,12 @@ int run_program(const char* path, char* const* arguments, char* const* environme
     REAL(execve)(path, arguments, linked);
     const int error = errno;
     free(linked);
-    errno = error;
-    return -1;
+    return fail(error);
 }
 
 int run_found(const char* file, char* const* arguments, char* const* environment) {
     char room[PATH_MAX];
-    if (!is_text(file)) {
-        errno = EFAULT;
-        return -1;
-    }
+    if (!is_text(file)) return fail(EFAULT);
     const char* path = search_path(file, room);
     const int result = run_program(path, arguments, environment);
     if (errno != ENOEXEC) return result;
@@ -211,17 +205,13 @@ SHIM_EXPORT int fexecve(int fd, char* const* arguments, char* const* environment
 SHIM_EXPORT int execveat(int folder, const char* path, char* const* arguments, char* const* environment,
                          int flags) noexcept {
     if (!active()) return REAL(execveat)(folder, path, arguments, environment, flags);
-    if (!is_text(path)) {
-        errno = EFAULT;
-        return -1;
-    }
+    if (!is_text(path)) return fail(EFAULT);
     if (*path == '\0' && (flags & AT_EMPTY_PATH) != 0) return fexecve(folder, arguments, environment);
     if (*path == '/' || folder == AT_FDCWD) return run_program(path, arguments, environment);
     char beside[512];
     const int size = std::snprintf(beside, sizeof beside, "/proc/self/fd/%d/%s", folder, path);
     if (size < static_cast<int>(sizeof beside)) return run_program(beside, arguments, environment);
-    errno = ENAMETOOLONG;
-    return -1;
+    return fail(ENAMETOOLONG);
 }
 
 SHIM_EXPORT int execl(const char* path, const char* first, ...) noexcept {

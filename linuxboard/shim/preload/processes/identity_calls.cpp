@@ -2,6 +2,7 @@
 // random numbers, so they count from a fixed one; calls that take one accept those of the program's
 // processes.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
@@ -74,10 +75,7 @@ SHIM_EXPORT pid_t getppid() noexcept {
 
 namespace puckloop::shim {
 int signal_thread(pid_t process, pid_t thread, int number) {
-    if (number < 0 || number >= NSIG) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (number < 0 || number >= NSIG) return fail(EINVAL);
     for (std::size_t i = 0; (process < 0 || process == own().number) && i < thread_count(); ++i) {
         const Thread* candidate = thread_at(i);
         if (candidate == nullptr || !candidate->has_handle || thread_number(candidate->index) != thread)
@@ -87,8 +85,7 @@ int signal_thread(pid_t process, pid_t thread, int number) {
     }
     // Of another process only the first thread is known: it is the process.
     if (thread > 0 && (process < 0 || process == thread)) return kill(thread, number);
-    errno = ESRCH;
-    return -1;
+    return fail(ESRCH);
 }
 }  // namespace puckloop::shim
 
@@ -115,10 +112,7 @@ SHIM_EXPORT pid_t gettid() noexcept {
 
 SHIM_EXPORT int kill(pid_t process, int number) noexcept {
     if (!active()) return REAL(kill)(process, number);
-    if (number < 0 || number >= NSIG) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (number < 0 || number >= NSIG) return fail(EINVAL);
     if (number == SIGSTOP) note("stopping a process has no effect");
     const pid_t group = process == 0 ? own().group : -process;
     const bool found = send_to(number, [&](const wire::ProcessEntry& entry) {
@@ -126,8 +120,7 @@ SHIM_EXPORT int kill(pid_t process, int number) noexcept {
         return process == -1 ? &entry != &own() : entry.group == group;
     });
     if (found) return 0;
-    errno = ESRCH;  // the host's own processes are out of reach
-    return -1;
+    return fail(ESRCH);  // the host's own processes are out of reach
 }
 
 SHIM_EXPORT int raise(int number) noexcept {
@@ -149,8 +142,7 @@ SHIM_EXPORT int setpgid(pid_t process, pid_t group) noexcept {
         entry.group = group == 0 ? entry.number : group;
         return 0;
     }
-    errno = ESRCH;
-    return -1;
+    return fail(ESRCH);
 }
 
 SHIM_EXPORT int setpgrp() noexcept {
@@ -172,8 +164,7 @@ SHIM_EXPORT pid_t getpgid(pid_t process) noexcept {
         if (entry.state != wire::ProcessEntry::Free &&
             entry.number == (process == 0 ? own().number : process))
             return entry.group;
-    errno = ESRCH;
-    return -1;
+    return fail(ESRCH);
 }
 
 SHIM_EXPORT pid_t getsid(pid_t process) noexcept {
@@ -183,10 +174,7 @@ SHIM_EXPORT pid_t getsid(pid_t process) noexcept {
 SHIM_EXPORT int gethostname(char* name, size_t size) noexcept {
     if (!active()) return REAL(gethostname)(name, size);
     const char* host = page().host_name;
-    if (std::strlen(host) >= size) {
-        errno = ENAMETOOLONG;
-        return -1;
-    }
+    if (std::strlen(host) >= size) return fail(ENAMETOOLONG);
     return copy_to_program(name, host, std::strlen(host) + 1) ? 0 : -1;
 }
 

@@ -1,6 +1,7 @@
 // Limits that a program sets for itself. Its link to the run stays within them: a process that it makes gets
 // a link of its own at the same number, which the kernel refuses beyond the limit of open files.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
@@ -34,10 +35,7 @@ template <typename Limit>
 int set_file_size(const Limit* limit) {
     Limit wanted{};
     if (!get_from_program(wanted, limit)) return -1;
-    if (wanted.rlim_cur > wanted.rlim_max) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (wanted.rlim_cur > wanted.rlim_max) return fail(EINVAL);
     if (wanted.rlim_cur != RLIM_INFINITY) note("the limit of file sizes is not enforced");
     file_size = {wanted.rlim_cur, wanted.rlim_max};
     return 0;

@@ -3,6 +3,7 @@
 // library needs, is refused by name.
 
 #include "linuxboard/shim/preload/processes/namespace_calls.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -32,10 +33,7 @@ constexpr std::uint64_t kNamespaces = CLONE_NEWCGROUP | CLONE_NEWIPC | CLONE_NEW
 int death_signal = 0;
 
 int set_death_signal(long number) {
-    if (number < 0 || number > SIGRTMAX) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (number < 0 || number > SIGRTMAX) return fail(EINVAL);
     if (number != 0) note("a signal at the parent's end (PR_SET_PDEATHSIG) is stored, not sent");
     death_signal = static_cast<int>(number);
     return 0;

@@ -2,6 +2,7 @@
 // for the program's processes, and none of any other. Priorities and scheduling policies are kept here: one
 // thread runs at a time whatever they are.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/process_numbers.h"
@@ -69,8 +70,7 @@ pid_t host_process(pid_t given) {
     if (!active() || given == 0) return given;
     for (const wire::ProcessEntry& entry : page().processes)
         if (entry.state != wire::ProcessEntry::Free && entry.number == given) return entry.host;
-    errno = ESRCH;
-    return -1;
+    return fail(ESRCH);
 }
 
 pid_t program_process(pid_t host) {
@@ -84,10 +84,7 @@ SHIM_EXPORT int setpriority(__priority_which_t which, id_t who, int priority) no
     if (!active()) return REAL(setpriority)(which, who, priority);
     if (!check_priority(static_cast<int>(which), static_cast<pid_t>(who))) return -1;
     const int level = std::clamp(priority, kLeastNice, kNicest);
-    if (level < nice_level && geteuid() != 0) {
-        errno = EACCES;
-        return -1;
-    }
+    if (level < nice_level && geteuid() != 0) return fail(EACCES);
     if (which != PRIO_PROCESS || is_own(static_cast<pid_t>(who))) nice_level = level;
     return 0;
 }
@@ -101,10 +98,7 @@ SHIM_EXPORT int getpriority(__priority_which_t which, id_t who) noexcept {
 
 SHIM_EXPORT int nice(int increment) noexcept {
     if (!active()) return REAL(nice)(increment);
-    if (increment < 0 && geteuid() != 0) {
-        errno = EPERM;
-        return -1;
-    }
+    if (increment < 0 && geteuid() != 0) return fail(EPERM);
     nice_level =
         std::clamp(nice_level + std::clamp(increment, -2 * kNicest, 2 * kNicest), kLeastNice, kNicest);
     return nice_level;
@@ -143,10 +137,7 @@ SHIM_EXPORT int sched_getaffinity(pid_t process, size_t size, cpu_set_t* process
 }
 
 SHIM_EXPORT int pidfd_open(pid_t process, unsigned flags) noexcept {
-    if (process == 0) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (process == 0) return fail(EINVAL);
     return with_host_number(
         process, [&](pid_t host) { return static_cast<int>(host_call(SYS_pidfd_open, host, flags)); });
 }
@@ -204,25 +195,16 @@ SHIM_EXPORT int semctl(int set, int number, int command, ...) noexcept {
 
 SHIM_EXPORT int sigqueue(pid_t process, int number, const sigval value) noexcept {
     if (!active()) return REAL(sigqueue)(process, number, value);
-    if (number < 0 || number >= NSIG) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (number < 0 || number >= NSIG) return fail(EINVAL);
     if (process == own().number)
         return REAL(sigqueue)(static_cast<pid_t>(host_call(SYS_getpid)), number, value);
-    if (process <= 0 || host_process(process) < 0) {
-        errno = ESRCH;
-        return -1;
-    }
+    if (process <= 0 || host_process(process) < 0) return fail(ESRCH);
     if (number != 0) note("the value of sigqueue() does not reach another process");
     return kill(process, number);
 }
 
 SHIM_EXPORT int tgkill(pid_t process, pid_t thread, int number) {
     if (!active()) return static_cast<int>(host_call(SYS_tgkill, process, thread, number));
-    if (process <= 0 || thread <= 0) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (process <= 0 || thread <= 0) return fail(EINVAL);
     return signal_thread(process, thread, number);
 }

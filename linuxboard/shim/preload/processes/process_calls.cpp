@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
 #include "linuxboard/shim/preload/host/direct_syscalls.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/processes/begin_process.h"
@@ -72,10 +73,7 @@ SHIM_EXPORT ssize_t getrandom(void* buffer, size_t size, unsigned flags) {
 SHIM_EXPORT int getentropy(void* buffer, size_t size) {
     if (!active()) return REAL(getentropy)(buffer, size);
     constexpr size_t kMost = 256;
-    if (size > kMost) {
-        errno = EIO;
-        return -1;
-    }
+    if (size > kMost) return fail(EIO);
     return read_random(buffer, size) < 0 ? -1 : 0;
 }
 

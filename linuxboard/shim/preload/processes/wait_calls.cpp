@@ -1,6 +1,7 @@
 // Waiting for children, in simulated time.
 
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -64,15 +65,9 @@ pid_t await_child(pid_t which, int* status, int options, Time& used) {
             }
             return status == nullptr || put_to_program(status, ended_with) ? number : -1;
         }
-        if (!found.any) {
-            errno = ECHILD;
-            return -1;
-        }
+        if (!found.any) return fail(ECHILD);
         if ((options & WNOHANG) != 0) return 0;
-        if (interrupted) {
-            errno = EINTR;
-            return -1;
-        }
+        if (interrupted) return fail(EINTR);
         WaitOptions wait;
         wait.interruptible = true;
         wait.cancellable = true;
@@ -114,8 +109,7 @@ SHIM_EXPORT int waitid(idtype_t kind, id_t id, siginfo_t* theirs, int options) {
     if (!active()) return REAL(waitid)(kind, id, theirs, options);
     if (kind != P_ALL && kind != P_PID && kind != P_PGID) {
         note("waitid: process descriptors are not supported");
-        errno = EINVAL;
-        return -1;
+        return fail(EINVAL);
     }
     const auto number = static_cast<pid_t>(id);
     const pid_t which = kind == P_ALL ? -1 : kind == P_PID ? number : number == 0 ? 0 : -number;

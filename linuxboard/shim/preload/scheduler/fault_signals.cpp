@@ -3,6 +3,7 @@
 // SIGSYS is one of them since system calls past the C library arrive by it (direct_syscalls.h).
 
 #include "linuxboard/shim/preload/host/fault_signals.h"
+#include "linuxboard/shim/preload/host/failure.h"
 
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
@@ -172,6 +173,5 @@ SHIM_EXPORT int pthread_sigmask(int how, const sigset_t* set, sigset_t* before) 
 SHIM_EXPORT int sigprocmask(int how, const sigset_t* set, sigset_t* before) noexcept {
     const int error = pthread_sigmask(how, set, before);
     if (error == 0) return 0;
-    errno = error;
-    return -1;
+    return fail(error);
 }

@@ -1,4 +1,5 @@
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
+#include "linuxboard/shim/preload/host/failure.h"
 
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/link.h"
@@ -504,10 +505,7 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
     Thread* me = current;
     while (true) {
         if (interruptible && me->cancel_asked) pthread_testcancel();
-        if (signals_due() && !take_signals() && interruptible) {
-            errno = EINTR;
-            return -1;
-        }
+        if (signals_due() && !take_signals() && interruptible) return fail(EINTR);
         me->state = Thread::State::Device;
         me->out = out;
         me->capacity = capacity;
@@ -533,18 +531,15 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
             // poll() is never restarted; what a handler wrote into a pipe is seen by the next one.
             const bool ends = request.op == wire::Op::Poll && page().networked != 0;
             if (take_signals() && !ends) continue;
-            errno = EINTR;
-            return -1;
+            return fail(EINTR);
         }
         const bool signalled = signals_due();
         while (signals_due())
             take_signals();
         // A wait that ended without news at the very time of an alarm was ended by it.
         if (signalled && interruptible && result == 0 && request.op == wire::Op::Poll &&
-            page().networked != 0) {
-            errno = EINTR;
-            return -1;
-        }
+            page().networked != 0)
+            return fail(EINTR);
         if (result < 0) errno = error;
         return result;
     }

@@ -1,5 +1,6 @@
 // Semaphores, barriers, pthread_once. See lock_calls.cpp.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/outside_news.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
@@ -29,19 +30,13 @@ int wait_semaphore(sem_t* semaphore, Time deadline) {
     charge_lock();
     while (REAL(sem_trywait)(semaphore) != 0) {
         if (errno != EAGAIN) return -1;
-        if (deadline <= now()) {
-            errno = ETIMEDOUT;
-            return -1;
-        }
+        if (deadline <= now()) return fail(ETIMEDOUT);
         WaitOptions options;
         options.deadline = deadline;
         options.interruptible = true;
         options.cancellable = true;
         const Wake reason = park_shared(semaphore, options, is_shared(semaphore));
-        if (reason == Wake::Signal) {
-            errno = EINTR;
-            return -1;
-        }
+        if (reason == Wake::Signal) return fail(EINTR);
     }
     return 0;
 }

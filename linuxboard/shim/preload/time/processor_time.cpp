@@ -1,6 +1,7 @@
 // Processor time. It is what the model charges: each call taken over costs its class (wire::Charges), and
 // computing costs nothing; waiting does not count. All of it is system time.
 
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/scheduler.h"
@@ -96,8 +97,7 @@ SHIM_EXPORT int getrusage(__rusage_who_t who, rusage* usage) noexcept {
         used = self()->computed;
         break;
     default:
-        errno = EINVAL;
-        return -1;
+        return fail(EINVAL);
     }
     rusage result{};
     result.ru_stime = {used / kSecond, used % kSecond / kMicrosecond};

@@ -203,15 +203,13 @@ SHIM_EXPORT int nanosleep(const timespec* request, timespec* remain) {
     if (!active()) return REAL(nanosleep)(request, remain);
     const int error = clock_nanosleep(CLOCK_MONOTONIC, 0, request, remain);
     if (error == 0) return 0;
-    errno = error;
-    return -1;
+    return fail(error);
 }
 
 SHIM_EXPORT int usleep(useconds_t microseconds) {
     if (!active()) return REAL(usleep)(microseconds);
     if (!sleep_until(time_after(microseconds * kMicrosecond))) return 0;
-    errno = EINTR;
-    return -1;
+    return fail(EINTR);
 }
 
 SHIM_EXPORT unsigned sleep(unsigned seconds) {

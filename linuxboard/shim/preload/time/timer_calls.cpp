@@ -2,6 +2,7 @@
 
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -43,10 +44,7 @@ int set_timer(Timer* timer, bool absolute, const itimerspec* theirs, itimerspec*
     if (!get_from_program(value, theirs)) return -1;
     const bool valid = is_valid(value.it_value) && is_valid(value.it_interval) &&
                        value.it_value.tv_sec >= 0 && value.it_interval.tv_sec >= 0;
-    if (!valid || !is_timer(timer)) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (!valid || !is_timer(timer)) return fail(EINVAL);
     if (old != nullptr && !put_to_program(old, read_timer(*timer))) return -1;
     const Time first = from_timespec(value.it_value);
     timer->interval = from_timespec(value.it_interval);
@@ -114,8 +112,7 @@ SHIM_EXPORT int setitimer(__itimer_which_t which, const itimerval* value, itimer
     if (which != ITIMER_REAL) {
         if (which == ITIMER_VIRTUAL || which == ITIMER_PROF)
             note("setitimer: timers of processor time are not supported");
-        errno = EINVAL;
-        return -1;
+        return fail(EINVAL);
     }
     charge(page().charges.clock);
     itimerval given{};  // Linux takes no value for one of zeros
@@ -123,10 +120,7 @@ SHIM_EXPORT int setitimer(__itimer_which_t which, const itimerval* value, itimer
     const auto is_time = [](const timeval& time) {
         return time.tv_sec >= 0 && time.tv_usec >= 0 && time.tv_usec < 1'000'000;
     };
-    if (!is_time(given.it_value) || !is_time(given.it_interval)) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (!is_time(given.it_value) || !is_time(given.it_interval)) return fail(EINVAL);
     if (old != nullptr && getitimer(which, old) != 0) return -1;
     Timer& timer = real_timer();
     timer.signal = SIGALRM;
@@ -147,20 +141,15 @@ SHIM_EXPORT int timer_create(clockid_t clock, sigevent* event, timer_t* id) noex
     if (event != nullptr) event = &given;
     if (is_processor_clock(clock)) {
         note("timer_create: timers of processor time are not supported");
-        errno = ENOTSUP;
-        return -1;
+        return fail(ENOTSUP);
     }
     if (event != nullptr && event->sigev_notify != SIGEV_SIGNAL && event->sigev_notify != SIGEV_NONE) {
         note(
             "timer_create: timers that start threads are not supported (signals, setitimer and timerfd are)");
-        errno = ENOTSUP;
-        return -1;
+        return fail(ENOTSUP);
     }
     Timer* timer = new_timer(-1);
-    if (timer == nullptr) {
-        errno = EAGAIN;
-        return -1;
-    }
+    if (timer == nullptr) return fail(EAGAIN);
     timer->clock = clock;
     timer->signal = event == nullptr ? SIGALRM : event->sigev_notify == SIGEV_SIGNAL ? event->sigev_signo : 0;
     if (put_to_program(id, static_cast<timer_t>(timer))) return 0;
@@ -202,8 +191,7 @@ SHIM_EXPORT int timerfd_create(clockid_t clock, int flags) noexcept {
     Timer* timer = new_timer(fd);
     if (timer == nullptr) {
         REAL(close)(fd);
-        errno = EMFILE;
-        return -1;
+        return fail(EMFILE);
     }
     timer->clock = clock;
     return fd;
@@ -237,8 +225,7 @@ SHIM_EXPORT int pause() {
     options.cancellable = true;
     while (park(&key, options) != Wake::Signal) {
     }
-    errno = EINTR;
-    return -1;
+    return fail(EINTR);
 }
 
 SHIM_EXPORT int sigsuspend(const sigset_t* mask) {
@@ -253,8 +240,7 @@ SHIM_EXPORT int sigsuspend(const sigset_t* mask) {
     pthread_sigmask(SIG_SETMASK, mask, &before);
     if (!due) pause();
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    errno = EINTR;
-    return -1;
+    return fail(EINTR);
 }
 
 extern "C" {

@@ -4,6 +4,7 @@
 
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/host.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
@@ -48,10 +49,7 @@ Watch* find_watch(int epoll_fd, int fd) {
 int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) {
     Watch* watch = find_watch(epoll_fd, fd);
     if (operation == EPOLL_CTL_DEL) {
-        if (watch == nullptr) {
-            errno = ENOENT;
-            return -1;
-        }
+        if (watch == nullptr) return fail(ENOENT);
         *watch = {};
         return 0;
     }
@@ -63,8 +61,7 @@ int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) 
     if (watch == nullptr && watch_end < kMostWatches) watch = &watches[watch_end++];
     if (watch == nullptr) {
         note("the program watches more than %d sockets and devices", kMostWatches);
-        errno = ENOSPC;
-        return -1;
+        return fail(ENOSPC);
     }
     const bool edge = (event->events & EPOLLET) != 0;
     *watch = {epoll_fd, fd, *event, true, edge ? wire::kNeverSeen : 0};
@@ -178,22 +175,16 @@ SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* even
     epoll_event wanted{};
     if (operation != EPOLL_CTL_DEL && !get_from_program(wanted, event)) return -1;
     if (open_file(fd)->kind == OpenFile::Kind::I2c) {  // i2c-dev has no poll method
-        errno = EPERM;
-        return -1;
+        return fail(EPERM);
     }
     if (!is_epoll(epoll_fd)) return -1;
-    if (operation != EPOLL_CTL_ADD && operation != EPOLL_CTL_MOD && operation != EPOLL_CTL_DEL) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (operation != EPOLL_CTL_ADD && operation != EPOLL_CTL_MOD && operation != EPOLL_CTL_DEL)
+        return fail(EINVAL);
     return change_watch(epoll_fd, operation, fd, &wanted);
 }
 
 static int wait_until(int epoll_fd, epoll_event* events, int most, Time deadline, const sigset_t* mask) {
-    if (most <= 0) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (most <= 0) return fail(EINVAL);
     if (!is_epoll(epoll_fd)) return -1;
     std::vector<PollItem> entries{{epoll_fd, POLLIN, 0, 0}};
     std::vector<Nested> nested;
@@ -244,10 +235,7 @@ SHIM_EXPORT int epoll_pwait2(int epoll_fd, epoll_event* events, int most, const 
     if (!active()) return REAL(epoll_pwait2)(epoll_fd, events, most, timeout, mask);
     timespec time{};
     if (timeout != nullptr && !get_from_program(time, timeout)) return -1;
-    if (!is_valid(time)) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (!is_valid(time)) return fail(EINVAL);
     return wait_until(epoll_fd, events, most, timeout == nullptr ? kNever : time_after(from_timespec(time)),
                       mask);
 }

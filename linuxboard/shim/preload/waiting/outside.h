@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/link.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/outside_news.h"
@@ -35,15 +36,12 @@ template <typename Call>
 ssize_t outside(int fd, short events, Call call) {
     if (!active()) return call();
     if (is_link_descriptor(fd)) {  // none of the program's
-        errno = EBADF;
-        return -1;
+        return fail(EBADF);
     }
     if (goes_straight(fd)) {
         charge(page().charges.device);
-    } else if (!await_external(fd, events)) {
-        errno = EINTR;
-        return -1;
-    }
+    } else if (!await_external(fd, events))
+        return fail(EINTR);
     const ssize_t result = call();
     const int error = errno;
     external_changed();

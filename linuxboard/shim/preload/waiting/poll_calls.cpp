@@ -5,6 +5,7 @@
 
 #include "linuxboard/shim/preload/descriptors/external.h"
 #include "linuxboard/shim/preload/descriptors/open_file.h"
+#include "linuxboard/shim/preload/host/failure.h"
 #include "linuxboard/shim/preload/host/program_memory.h"
 #include "linuxboard/shim/preload/host/real.h"
 #include "linuxboard/shim/preload/scheduler/board_clock.h"
@@ -163,10 +164,7 @@ int poll_until(PollItem* entries, nfds_t count, Time deadline) {
         options.deadline = has_outside ? std::min(deadline, time_after(kExternalPeriod)) : deadline;
         options.interruptible = true;
         options.cancellable = true;
-        if (park(external_key(), options) == Wake::Signal) {
-            errno = EINTR;
-            return -1;
-        }
+        if (park(external_key(), options) == Wake::Signal) return fail(EINTR);
     }
 }
 
@@ -219,10 +217,7 @@ int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time 
     if (result < 0) return result;
     int bits = 0;
     for (nfds_t i = 0; i < total; ++i) {
-        if ((entries[i].revents & POLLNVAL) != 0) {
-            errno = EBADF;
-            return -1;
-        }
+        if ((entries[i].revents & POLLNVAL) != 0) return fail(EBADF);
     }
     for (nfds_t i = 0; i < total; ++i) {
         const PollItem& entry = entries[i];
@@ -247,10 +242,7 @@ int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time 
 namespace {
 /// poll_until() on entries of the program.
 int poll_program(pollfd* theirs, nfds_t count, Time deadline) {
-    if (count > FD_SETSIZE) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (count > FD_SETSIZE) return fail(EINVAL);
     Room<pollfd> entries(count);
     Room<PollItem> items(count);
     if (!copy_from_program(entries.data(), theirs, count * sizeof(pollfd))) return -1;
@@ -276,10 +268,7 @@ bool get_timeout(const timespec* timeout, Time& deadline) {
 
 /// select_until() on sets of the program, which need not be as long as fd_set.
 int select_program(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time deadline) {
-    if (count < 0) {
-        errno = EINVAL;
-        return -1;
-    }
+    if (count < 0) return fail(EINVAL);
     count = std::min(count, FD_SETSIZE);
     constexpr int kWord = 64;
     const std::size_t bytes = static_cast<std::size_t>((count + kWord - 1) / kWord) * sizeof(std::uint64_t);
@@ -318,10 +307,7 @@ SHIM_EXPORT int select(int count, fd_set* reads, fd_set* writes, fd_set* errors,
     timeval given{};
     if (timeout != nullptr) {
         if (!get_from_program(given, timeout)) return -1;
-        if (given.tv_sec < 0 || given.tv_usec < 0) {
-            errno = EINVAL;
-            return -1;
-        }
+        if (given.tv_sec < 0 || given.tv_usec < 0) return fail(EINVAL);
         deadline = time_after(
             from_timespec({given.tv_sec + given.tv_usec / 1'000'000, given.tv_usec % 1'000'000 * 1000}));
     }
