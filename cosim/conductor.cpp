@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "cosim/conductor_state.h"
+#include "cosim/remote/node_hosts.h"
+#include "cosim/remote/processes/process_line.h"
 #include "cosim/remote/remote_node.h"
 
 #include <fmt/format.h>
@@ -44,17 +46,24 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
             throw InputError("", fmt::format("node {}", spec.name), "two nodes have this name");
     // Processes start side by side; each makes its node while the others do.
     for (const NodeSpec& spec : specs_) {
-        if (spec.in_process.value_or(options_.in_process)) {
+        if (spec.host != 0) {
+            handles_.push_back(make_remote_node(options_.hosts->line_to(spec.host), spec.name, spec.json,
+                                                options_.stall_seconds));
+            elsewhere_too_ = true;
+            continue;
+        }
+        if (options_.hosts || spec.in_process.value_or(options_.in_process)) {
             handles_.push_back(make_local_node(spec.name, spec.json, factory));
             continue;
         }
         if (!processes_) processes_ = std::make_unique<NodeProcesses>();
-        handles_.push_back(make_remote_node(*processes_, spec.name, spec.json, options_.node_command,
-                                            options_.stall_seconds));
+        handles_.push_back(make_remote_node(start_node_process(*processes_, spec.name, options_.node_command),
+                                            spec.name, spec.json, options_.stall_seconds));
+        elsewhere_too_ = true;
     }
     for (const auto& handle : handles_)
         handle->await_ready();
-    in_windows_ = options_.windows && !processes_ && !options_.realtime;
+    in_windows_ = options_.windows && !elsewhere_too_ && !options_.realtime;
     network_ = std::make_unique<Network>(handles_, links_, fault_specs_, options_.seed);
     end_ = options_.duration;
     times_.resize(handles_.size());

@@ -17,6 +17,7 @@
 
 namespace puckloop::cosim {
 
+class NodeHosts;     // cosim/remote/node_hosts.h
 struct RunSnapshot;  // cosim/resume/run_snapshot.h
 
 struct NodeSpec {
@@ -29,6 +30,8 @@ struct NodeSpec {
     /// It speaks for something that cannot be repeated. Where it is executed again (RunOptions::from), what
     /// it sent then stands.
     bool outside = false;
+    /// With RunOptions::hosts: where it lives; 0: as without.
+    unsigned host = 0;
 };
 
 struct Progress {
@@ -51,9 +54,12 @@ struct RunOptions {
     double stall_seconds = 10.0;     ///< a node process that does not answer for so long ends the run
     /// A node's request to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
-    /// Starts a process that serves one node (cosim/remote/node_server.h) on descriptors 3 and 4; in place of
-    /// the program's name it gets "puckloop: " and the node's, which is what ps shows.
+    /// Starts a process that serves one node (cosim/remote/processes/node_server.h) on descriptors 3 and 4;
+    /// in place of the program's name it gets "puckloop: " and the node's, which is what ps shows.
     std::vector<std::string> node_command{"/proc/self/exe"};
+    /// Processes that serve nodes; they outlive the conductor. All nodes that are on none of them are in this
+    /// process.
+    NodeHosts* hosts = nullptr;
     /// Cuts grants at random places; the trace must not change (for tests).
     std::optional<std::uint64_t> chop_seed{};
     /// When snapshots are taken, rising; `save` gets each, without build, origin and trace. A run that ends

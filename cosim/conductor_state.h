@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "cosim/conductor.h"
-#include "cosim/remote/node_processes.h"
+#include "cosim/remote/processes/node_processes.h"
 #include "cosim/schedule/network.h"
 #include "cosim/schedule/schedule.h"
 #include "cosim/schedule/trial.h"
@@ -170,6 +170,7 @@ class Conductor::State {
     std::vector<FaultSpec> fault_specs_;
     RunOptions options_;
     std::unique_ptr<NodeProcesses> processes_;  ///< once there is a node in a process of its own
+    bool elsewhere_too_ = false;                ///< not all nodes are in this process
     std::vector<std::unique_ptr<NodeHandle>> handles_;
     std::unique_ptr<Network> network_;
 

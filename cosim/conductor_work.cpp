@@ -137,7 +137,7 @@ void Conductor::State::take_local_reply(std::size_t n) {
 
 void Conductor::State::collect() {
     elsewhere_.clear();
-    if (processes_)
+    if (elsewhere_too_)
         for (std::size_t n = 0; n < handles_.size(); ++n)
             if (times_[n].busy && handles_[n]->elsewhere()) elsewhere_.push_back(n);
     const bool any = work_here();
@@ -153,7 +153,7 @@ void Conductor::State::collect() {
 /// Takes what nodes of other processes have answered; with `wait` until there is something.
 void Conductor::State::collect_elsewhere(bool wait) {
     for (int looks = wait ? 2 : 1; looks > 0; --looks) {
-        const std::uint32_t seen = processes_->rings();
+        const std::uint32_t seen = processes_ ? processes_->rings() : 0;
         bool any = false;
         for (const std::size_t n : elsewhere_) {
             current_ = n;
@@ -162,7 +162,11 @@ void Conductor::State::collect_elsewhere(bool wait) {
             any = true;
         }
         if (any) return;
-        if (looks == 2) processes_->await_answers(seen, elsewhere_.size());
+        if (looks != 2) return;
+        if (processes_)
+            processes_->await_answers(seen, elsewhere_.size());
+        else
+            options_.hosts->await_answers();
     }
 }
 

@@ -1,39 +1,26 @@
 #include "cosim/remote/remote_node.h"
 
 #include "base/error.h"
-#include "cosim/core/process_name.h"
-#include "cosim/remote/child_process.h"
 #include "cosim/remote/protocol.h"
-#include "cosim/remote/ring_stream.h"
 
 #include <fmt/format.h>
 
-#include <array>
+#include <chrono>
 
 namespace puckloop::cosim {
 
 namespace {
 
-// To reap a process that has ended, or is about to.
-constexpr std::chrono::milliseconds kEndPatience{2000};
 // A node under grant when the run ends gets so long to come back.
 constexpr std::chrono::seconds kFinishPatience{2};
 
 class RemoteNode : public NodeHandle {
   public:
-    RemoteNode(NodeProcesses& processes, const std::string& name, const std::string& json,
-               const std::vector<std::string>& command, double stall_seconds)
-        : memory_(SharedWithNode::kName, sizeof(SharedWithNode)),
-          shared_(*reinterpret_cast<SharedWithNode*>(memory_.data())),
-          bell_(shared_.node, processes.busy()),
-          stream_(shared_.from_node, shared_.to_node, processes.bell(), bell_),
+    RemoteNode(std::unique_ptr<NodeLine> line, const std::string& name, const std::string& json,
+               double stall_seconds)
+        : line_(std::move(line)),
           stall_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(stall_seconds))) {
         name_ = name;
-        child_ = std::make_unique<ChildProcess>(command, std::string(kNodeTitle) + name_,
-                                                std::array{memory_.descriptor(), processes.descriptor()});
-        memory_.close_descriptor();
-        processes.busy().processes.fetch_add(1);
-        ended_ = processes.deaths().watch(child_->id());
         protocol::write_hello(bytes_, {name, json});
         send();
     }
@@ -69,7 +56,7 @@ class RemoteNode : public NodeHandle {
     }
 
     bool elsewhere() const override { return true; }
-    int process() const override { return static_cast<int>(child_->id()); }
+    int process() const override { return line_->process(); }
 
     void wind_up(int signal) override {
         protocol::write_wind_up(bytes_, signal);
@@ -122,7 +109,7 @@ class RemoteNode : public NodeHandle {
         std::string report;
         decode(protocol::Kind::Report, [&](auto body) { report = protocol::read_report(body); });
         lost_ = true;
-        child_->ended(kEndPatience);
+        line_->close();
         return report;
     }
 
@@ -130,7 +117,7 @@ class RemoteNode : public NodeHandle {
     void send() {
         asked_at_ = Clock::now();
         try {
-            for (bool dead = has_ended(); !stream_.send(bytes_, kWaitSlice); dead = has_ended()) {
+            for (bool dead = line_->ended(); !line_->send(bytes_, kWaitSlice); dead = line_->ended()) {
                 if (dead) ended();
                 if (Clock::now() - asked_at_ > stall_) lose("does not take what is sent to it");
             }
@@ -141,9 +128,9 @@ class RemoteNode : public NodeHandle {
 
     /// True when a whole message has come; throws when the node will not answer any more.
     bool receive(bool wait) {
-        const bool dead = has_ended();
+        const bool dead = line_->ended();
         try {
-            if (stream_.receive(wait && !dead ? kWaitSlice : kWaitSlice.zero())) return true;
+            if (line_->receive(wait && !dead ? kWaitSlice : kWaitSlice.zero())) return true;
         } catch (const CodecError& error) {
             lose(fmt::format("sent {}", error.what()));
         }
@@ -157,7 +144,7 @@ class RemoteNode : public NodeHandle {
 
     template <typename Read>
     void decode(protocol::Kind expected, Read read) {
-        const auto body = stream_.body();
+        const auto body = line_->body();
         protocol::Error error;
         try {
             if (protocol::kind_of(body) != protocol::Kind::Error) {
@@ -175,31 +162,17 @@ class RemoteNode : public NodeHandle {
                                    to_seconds(reached()), error.text));
     }
 
-    /// Asked before looking for what it said: a node that dies has said it before.
-    bool has_ended() const {
-        return ended_ ? ended_->load(std::memory_order_acquire)
-                      : child_->ended(std::chrono::milliseconds::zero());
-    }
-
-    [[noreturn]] void ended() {
-        child_->ended(kEndPatience);
-        lose(child_->ending());
-    }
+    [[noreturn]] void ended() { lose(line_->ending()); }
 
     [[noreturn]] void lose(const std::string& cause) {
         lost_ = true;
         const std::string granted =
             busy_ ? fmt::format(" (granted to {:.9f} s)", to_seconds(asked_)) : std::string();
-        throw RunError(fmt::format("node {} (process {}) {}; last simulated time {:.9f} s{}", name_,
-                                   child_->id(), cause, to_seconds(reached()), granted));
+        throw RunError(fmt::format("node {} ({}) {}; last simulated time {:.9f} s{}", name_, line_->place(),
+                                   cause, to_seconds(reached()), granted));
     }
 
-    SharedMemory memory_;
-    SharedWithNode& shared_;
-    Bell bell_;
-    RingStream stream_;
-    std::unique_ptr<ChildProcess> child_;
-    const std::atomic<bool>* ended_ = nullptr;  ///< DeathWatch
+    std::unique_ptr<NodeLine> line_;
     Bytes bytes_;
     Clock::duration stall_;
     Clock::time_point asked_at_{};
@@ -210,10 +183,9 @@ class RemoteNode : public NodeHandle {
 
 }  // namespace
 
-std::unique_ptr<NodeHandle> make_remote_node(NodeProcesses& processes, const std::string& name,
-                                             const std::string& json, const std::vector<std::string>& command,
-                                             double stall_seconds) {
-    return std::make_unique<RemoteNode>(processes, name, json, command, stall_seconds);
+std::unique_ptr<NodeHandle> make_remote_node(std::unique_ptr<NodeLine> line, const std::string& name,
+                                             const std::string& json, double stall_seconds) {
+    return std::make_unique<RemoteNode>(std::move(line), name, json, stall_seconds);
 }
 
 }  // namespace puckloop::cosim

@@ -1,20 +1,16 @@
 #pragma once
-// A node in a process of its own, over rings in anonymous memory: nothing of it stands on the file
-// system.
+// A node in another process, as the conductor sees it: what is asked of it, and what it may answer.
 
-#include "cosim/remote/node_processes.h"
+#include "cosim/remote/node_line.h"
 #include "cosim/schedule/node_handle.h"
 
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace puckloop::cosim {
 
-/// Starts the process; await_ready() waits for the node. `stall_seconds` > 0. `processes` outlives the
-/// handle.
-std::unique_ptr<NodeHandle> make_remote_node(NodeProcesses& processes, const std::string& name,
-                                             const std::string& json, const std::vector<std::string>& command,
-                                             double stall_seconds);
+/// Sends the node's description; await_ready() waits for the node. `stall_seconds` > 0.
+std::unique_ptr<NodeHandle> make_remote_node(std::unique_ptr<NodeLine> line, const std::string& name,
+                                             const std::string& json, double stall_seconds);
 
 }  // namespace puckloop::cosim

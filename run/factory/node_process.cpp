@@ -2,7 +2,7 @@
 
 #include "base/log.h"
 #include "cosim/core/process_name.h"
-#include "cosim/remote/node_server.h"
+#include "cosim/remote/processes/node_server.h"
 #include "cosim/remote/protocol.h"
 #include "emu/chip/translation_switch.h"
 #include "run/factory/node_factory.h"

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/plain_text.h"
-#include "cosim/remote/child_process.h"
+#include "cosim/remote/processes/child_process.h"
 #include "run/mission/mission_lines.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // On which cores a run's processes work: what goes faster is chosen, and nothing of it is left behind.
 
 #include "cosim/core/cores.h"
-#include "cosim/remote/core_choice.h"
+#include "cosim/remote/processes/core_choice.h"
 
 #include <catch2/catch.hpp>
 

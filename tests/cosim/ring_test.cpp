@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "cosim/remote/death_watch.h"
-#include "cosim/remote/node_processes.h"
+#include "cosim/remote/processes/death_watch.h"
+#include "cosim/remote/processes/node_processes.h"
 #include "cosim/remote/protocol.h"
-#include "cosim/remote/ring_stream.h"
+#include "cosim/remote/processes/ring_stream.h"
 
 #include <catch2/catch.hpp>
 

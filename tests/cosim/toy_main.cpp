@@ -1,8 +1,8 @@
 // A node process for tests: serves toy nodes, or misbehaves in the shared memory as its arguments say.
 
 #include "base/random.h"
-#include "cosim/remote/node_processes.h"
-#include "cosim/remote/node_server.h"
+#include "cosim/remote/processes/node_processes.h"
+#include "cosim/remote/processes/node_server.h"
 #include "cosim/remote/protocol.h"
 #include "toy_nodes.h"
 

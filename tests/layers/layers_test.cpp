@@ -28,6 +28,8 @@ const std::vector<std::string> kFolders = {
     "cosim/trace",
     "cosim/schedule",
     "cosim/remote",
+    "cosim/remote/processes",
+    "cosim/remote/mpi",
     "cosim/i2c",
     "cosim/can",
     "cosim/resume",

@@ -1,4 +1,4 @@
-#include "cosim/remote/ring_stream.h"
+#include "cosim/remote/processes/ring_stream.h"
 
 #include "cosim/remote/protocol.h"
 

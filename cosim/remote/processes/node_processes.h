@@ -2,20 +2,16 @@
 // What a run's node processes share with the conductor, and how it waits for them all.
 
 #include "cosim/core/cores.h"
-#include "cosim/remote/bell.h"
-#include "cosim/remote/core_choice.h"
-#include "cosim/remote/death_watch.h"
-#include "cosim/remote/ring.h"
-#include "cosim/remote/shared_memory.h"
+#include "cosim/remote/processes/bell.h"
+#include "cosim/remote/processes/core_choice.h"
+#include "cosim/remote/processes/death_watch.h"
+#include "cosim/remote/processes/ring.h"
+#include "cosim/remote/processes/shared_memory.h"
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 
 namespace puckloop::cosim {
-
-// How often a wait of the conductor looks at the clock and at Ctrl-C.
-inline constexpr std::chrono::milliseconds kWaitSlice{100};
 
 /// Memory that every process of a run maps: the bell that the conductor waits at. It starts all zero.
 struct SharedByRun {

@@ -1,4 +1,4 @@
-#include "cosim/remote/bell.h"
+#include "cosim/remote/processes/bell.h"
 
 #include "cosim/core/cores.h"
 

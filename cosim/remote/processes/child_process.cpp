@@ -1,4 +1,4 @@
-#include "cosim/remote/child_process.h"
+#include "cosim/remote/processes/child_process.h"
 
 #include "base/error.h"
 #include "cosim/remote/protocol.h"

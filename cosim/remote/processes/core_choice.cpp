@@ -1,4 +1,4 @@
-#include "cosim/remote/core_choice.h"
+#include "cosim/remote/processes/core_choice.h"
 
 #include "cosim/core/cores.h"
 

@@ -1,4 +1,4 @@
-#include "cosim/remote/death_watch.h"
+#include "cosim/remote/processes/death_watch.h"
 
 #include "base/error.h"
 #include "cosim/core/process_name.h"

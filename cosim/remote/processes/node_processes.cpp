@@ -1,4 +1,6 @@
-#include "cosim/remote/node_processes.h"
+#include "cosim/remote/processes/node_processes.h"
+
+#include "cosim/remote/node_line.h"
 
 namespace puckloop::cosim {
 

@@ -1,4 +1,4 @@
-#include "cosim/remote/ring.h"
+#include "cosim/remote/processes/ring.h"
 
 #include <algorithm>
 #include <cstring>

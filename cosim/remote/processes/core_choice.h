@@ -7,7 +7,7 @@
 // only in how fast a run goes, so both are tried now and then. What is simulated does not depend on it.
 
 #include "cosim/core/time.h"
-#include "cosim/remote/bell.h"
+#include "cosim/remote/processes/bell.h"
 #include "cosim/schedule/trial.h"
 
 #include <cstdint>

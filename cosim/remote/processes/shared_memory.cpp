@@ -1,4 +1,4 @@
-#include "cosim/remote/shared_memory.h"
+#include "cosim/remote/processes/shared_memory.h"
 
 #include "base/error.h"
 

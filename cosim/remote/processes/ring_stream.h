@@ -2,8 +2,8 @@
 // Whole messages over a pair of rings, with limits in wall time. Used by both sides.
 
 #include "cosim/core/codec.h"
-#include "cosim/remote/bell.h"
-#include "cosim/remote/ring.h"
+#include "cosim/remote/processes/bell.h"
+#include "cosim/remote/processes/ring.h"
 
 #include <chrono>
 #include <span>
