@@ -213,7 +213,8 @@ cosim::Outcome run_scenario(const RunSetup& planned, const RunRequest& request,
     cosim::RunOptions options;
     if (planned.scenario.duration) options.duration = cosim::from_seconds(*planned.scenario.duration);
     options.in_process = request.in_process;
-    options.windows = request.in_process && request.gdb.empty();
+    options.hosts = request.hosts;
+    options.windows = (request.in_process || request.hosts) && request.gdb.empty();
     options.realtime = request.realtime || request.paced;
     options.pace_from = planned.ready;
     set_threads(options, planned, request);

@@ -7,9 +7,15 @@
 #include <array>
 #include <optional>
 
+namespace puckloop::cosim {
+class NodeHosts;
+}
+
 namespace puckloop::tools {
 
 void declare_run(Command& app, int& status);
+/// The same with nodes on these, which outlive the command; null: as it is.
+void declare_run_on(Command& app, int& status, cosim::NodeHosts* hosts);
 void declare_import(Command& app, int& status);
 void declare_replay(Command& app, int& status);
 void declare_act(Command& app, int& status);

@@ -10,6 +10,7 @@
 #include <vector>
 
 namespace puckloop::cosim {
+class NodeHosts;
 struct RunSnapshot;
 }
 
@@ -40,6 +41,7 @@ struct RunRequest {
     std::function<std::filesystem::path(double)> save_name{};
     bool cache = false;  ///< boots are taken from the user's cache and kept there
     bool in_process = false;
+    cosim::NodeHosts* hosts = nullptr;  ///< of other machines; null: all nodes are this one's
     bool realtime = false;
     std::vector<std::string> joins;   ///< "PORT=HOST:PORT": ways into the network from outside
     bool paced = false;               ///< by the wall clock, with Linux programs in simulated time

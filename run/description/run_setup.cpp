@@ -3,7 +3,7 @@
 namespace puckloop::tools {
 
 cosim::NodeSpec node_spec(const PlannedNode& node) {
-    return {node.name, encode(node.what), node.in_process, node.any_thread, node.outside};
+    return {node.name, encode(node.what), node.in_process, node.any_thread, node.outside, node.host};
 }
 
 std::vector<cosim::NodeSpec> node_specs(const RunSetup& setup) {

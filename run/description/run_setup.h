@@ -19,6 +19,7 @@ struct PlannedNode {
     std::optional<bool> in_process{};  ///< as of cosim::NodeSpec, like the others
     bool any_thread = false;
     bool outside = false;
+    unsigned host = 0;
 };
 
 struct RunSetup {

@@ -4,8 +4,10 @@
 #include "base/log.h"
 #include "base/plain_text.h"
 #include "cosim/interrupt.h"
+#include "cosim/remote/node_hosts.h"
 #include "run/driven/driven_run.h"
 #include "run/factory/node_process.h"
+#include "run/plan/host_plan.h"
 #include "run/plan/overrides.h"
 #include "run/plan/parameter_list.h"
 #include "run/report/report.h"
@@ -111,6 +113,23 @@ int list_parameters(const RunRequest& request) {
     return 0;
 }
 
+/// What needs a board in this very process, or a process of its own for it.
+void check_hosts(const RunOptions& options) {
+    const RunRequest& request = options.request;
+    const auto refuse = [](const char* option, const char* why) {
+        throw InputError("", option, fmt::format("does not go with nodes on several hosts: {}", why));
+    };
+    if (options.view || options.shell || options.control)
+        refuse(options.view    ? "--view"
+               : options.shell ? "--shell"
+                               : "--control",
+               "their boards are out of reach");
+    if (!request.gdb.empty()) refuse("--gdb", "their boards are out of reach");
+    if (request.in_process) refuse("--in-process", "it puts all of them into one process");
+    if (request.realtime || request.paced)
+        refuse(request.paced ? "--paced" : "--realtime", "only one process keeps pace");
+}
+
 int run_scenario_file(RunOptions& options) {
     RunRequest& request = options.request;
     request.scenario = scenario_named(request.scenario);
@@ -135,6 +154,7 @@ int run_scenario_file(RunOptions& options) {
     request.cache = !options.no_cache && !options.control;
     if (!request.from.empty()) request = going_on(request);
     RunSetup setup = set_up(request);
+    if (request.hosts) plan_hosts(setup, request.hosts->count());
     if (options.control) let_client_drive(setup, request);
     for (const std::string& note : setup.scenario.not_taken)
         fmt::print(stderr, "{}: {}\n", request.scenario.string(), note);
@@ -206,10 +226,15 @@ int run_with_page(const std::filesystem::path& scenario) {
 }
 
 void declare_run(Command& app, int& status) {
+    declare_run_on(app, status, nullptr);
+}
+
+void declare_run_on(Command& app, int& status, cosim::NodeHosts* hosts) {
     Command* command =
         app.add_subcommand("run", "run a scenario: boards, Linux programs and the world together");
     auto options = std::make_shared<RunOptions>();
     RunRequest& request = options->request;
+    request.hosts = hosts;
     command->add_option("scenario", request.scenario, "scenario file (docs/scenario.md)")
         ->type_name("SCENARIO");
     command
@@ -404,6 +429,7 @@ void declare_run(Command& app, int& status) {
             throw InputError("", "--view-port", "there is no page", "--view with it");
         if (options->view && options->shell)
             throw InputError("", "--shell", "the page drives", "one of them");
+        if (options->request.hosts) check_hosts(*options);
         status = options->view || options->shell ? run_driven(*options) : run_scenario_file(*options);
     });
 }
