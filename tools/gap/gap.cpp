@@ -210,6 +210,7 @@ void declare_gap(Command& app, int& status) {
     command->require_subcommand(0, 1);
     declare_gap_new(*command, status);
     declare_gap_mission(*command, status);
+    declare_gap_power(*command, status);
     declare_gap_check(*command, status);
     declare_gap_import(*command, status);
     declare_gap_record(*command, status);

@@ -21,6 +21,7 @@ void declare_gap(Command& app, int& status);
 void declare_gap_check(Command& gap, int& status);
 void declare_gap_import(Command& gap, int& status);
 void declare_gap_mission(Command& gap, int& status);
+void declare_gap_power(Command& gap, int& status);
 void declare_gap_new(Command& gap, int& status);
 void declare_gap_record(Command& gap, int& status);
 /// `puckloop gap selftest --grammar`: randomly drawn cases. `seed` 0: a fresh one; `of`: class, "" for all.
