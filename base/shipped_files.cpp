@@ -57,6 +57,11 @@ fs::path shipped_program(std::string_view file_name, std::string_view build_fold
     return {};
 }
 
+fs::path main_program() {
+    const fs::path path = shipped_program("puckloop", "tools");
+    return path.empty() ? shipped_program("puckloop", "bin") : path;
+}
+
 fs::path shipped_image(std::string_view file_name) {
     if (file_name.empty() || file_name.find('/') != std::string_view::npos) return {};
     std::error_code error;

@@ -16,6 +16,10 @@ std::filesystem::path shipped_file(std::string_view name);
 /// `build_folder` ("linuxboard/shim"); empty: there is none.
 std::filesystem::path shipped_program(std::string_view file_name, std::string_view build_folder);
 
+/// `puckloop` itself, from any of the project's programs: beside this one, or in PREFIX/bin; empty: it is not
+/// there.
+std::filesystem::path main_program();
+
 /// A shipped firmware image by the name of its file ("epuck_ircom.hex", "tam.elf"); empty: there is none.
 std::filesystem::path shipped_image(std::string_view file_name);
 

@@ -38,9 +38,7 @@ Kit::~Kit() {
 }
 
 std::filesystem::path Kit::own_program() {
-    const std::filesystem::path path = shipped_program("puckloop", "tools");
-    // An installed one is in bin, beside the folder of this program's.
-    return path.empty() ? shipped_program("puckloop", "bin") : path;
+    return main_program();
 }
 
 std::filesystem::path Kit::shipped(const std::string& scenario) {

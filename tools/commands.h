@@ -3,9 +3,9 @@
 // line.
 
 #include "tools/cli/command.h"
+#include "tools/cli/other_programs.h"
 
 #include <array>
-#include <optional>
 
 namespace puckloop::cosim {
 class NodeHosts;
@@ -17,50 +17,32 @@ void declare_run(Command& app, int& status);
 /// The same with nodes on these, which outlive the command; null: as it is.
 void declare_run_on(Command& app, int& status, cosim::NodeHosts* hosts);
 void declare_import(Command& app, int& status);
-void declare_replay(Command& app, int& status);
 void declare_act(Command& app, int& status);
 void declare_mcp(Command& app, int& status);
-void declare_exec(Command& app, int& status);
-void declare_debug(Command& app, int& status);
-void declare_dap(Command& app, int& status);
 void declare_shell(Command& app, int& status);
-void declare_step(Command& app, int& status);
-void declare_asm(Command& app, int& status);
-void declare_disasm(Command& app, int& status);
-void declare_trace(Command& app, int& status);
-void declare_view(Command& app, int& status);
-void declare_frames(Command& app, int& status);
-void declare_faults(Command& app, int& status);
-void declare_experiment(Command& app, int& status);
-void declare_upload(Command& app, int& status);
-/// The lines in the help of what become_other() becomes.
-void declare_other_programs(Command& app, int& status);
-
-/// `bench` and `gap`: replaces this process by puckloop-bench or puckloop-gap with the same words. Returns 2,
-/// an exit status, where that is not built, and nothing for other commands.
-std::optional<int> become_other(int argc, char** argv);
 
 // clang-format off
 inline constexpr std::array kCommands{
     declare_run,
     declare_import,
-    declare_replay,
+    declare_other<"replay">,
     declare_act,
     declare_mcp,
-    declare_exec,
-    declare_debug,
-    declare_dap,
+    declare_other<"exec">,
+    declare_other<"debug">,
+    declare_other<"dap">,
     declare_shell,
-    declare_step,
-    declare_asm,
-    declare_disasm,
-    declare_trace,
-    declare_view,
-    declare_frames,
-    declare_faults,
-    declare_experiment,
-    declare_upload,
-    declare_other_programs,
+    declare_other<"step">,
+    declare_other<"asm">,
+    declare_other<"disasm">,
+    declare_other<"trace">,
+    declare_other<"view">,
+    declare_other<"frames">,
+    declare_other<"faults">,
+    declare_other<"experiment">,
+    declare_other<"upload">,
+    declare_other<"bench">,
+    declare_other<"gap">,
 };
 // clang-format on
 

@@ -1,9 +1,10 @@
-// puckloop: a table of subcommands. `bench` and `gap` are programs of their own (tools/bench, tools/gap).
+// puckloop: a table of subcommands. Some are programs of their own (tools/cli/other_programs.h).
 
 #include "run/factory/node_process.h"
 #include "run/plan/linux_arguments.h"
 #include "tools/cli/ample_stack.h"
 #include "tools/cli/file_size_limit.h"
+#include "tools/cli/other_programs.h"
 #include "tools/cli/program.h"
 #include "tools/commands.h"
 #include "tools/guide/guide.h"

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "base/shipped_files.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/jobs/result_files.h"
 
@@ -87,7 +88,7 @@ std::string replay_command(const Results& results, int id) {
 }
 
 std::string replay_command_anywhere(const Results& results, int id) {
-    return fmt::format("{} faults replay {} {}", shell_word(fs::read_symlink("/proc/self/exe").string()),
+    return fmt::format("{} faults replay {} {}", shell_word(main_program().string()),
                        shell_word(results.out.lexically_normal().string()), id);
 }
 

@@ -36,6 +36,7 @@ Ended run_on(const Workbench& bench, int ranks, const std::string& out, Words wo
 
 TEST_CASE("a run on one, two and three ranks is the run in one process") {
     const Workbench bench;
+    if (!works(bench)) return;
     const std::string scenario = kScenarios + "rab_pair.toml";
     REQUIRE(bench.run("here", {scenario, "--duration", "0.4", "--in-process"}).status == 0);
     for (const int ranks : {1, 2, 3}) {
@@ -50,6 +51,7 @@ TEST_CASE("a run on one, two and three ranks is the run in one process") {
 
 TEST_CASE("a booth and its radio on another rank leave the same trace") {
     const Workbench bench;
+    if (!works(bench)) return;
     const std::string scenario = kScenarios + "tam.toml";
     REQUIRE(bench.run("here", {scenario, "--duration", "1", "--in-process"}).status == 0);
     const Ended ended = run_on(bench, 2, "there", {scenario, "--duration", "1"});
@@ -60,6 +62,7 @@ TEST_CASE("a booth and its radio on another rank leave the same trace") {
 
 TEST_CASE("on several ranks bad input is one line and status 2") {
     const Workbench bench;
+    if (!works(bench)) return;
     const Ended missing = run_on(bench, 2, "o", {(bench.folder() / "none.toml").string()});
     CHECK(missing.status == 2);
     CHECK_THAT(missing.err, Contains("none.toml"));
@@ -78,6 +81,7 @@ TEST_CASE("on several ranks bad input is one line and status 2") {
 
 TEST_CASE("a node that cannot be made on its rank is named with the reason") {
     const Workbench bench;
+    if (!works(bench)) return;
     const auto image = bench.file("broken.hex", ":00000001FF\n");
     const Ended ended = run_on(
         bench, 2, "o",
@@ -88,6 +92,7 @@ TEST_CASE("a node that cannot be made on its rank is named with the reason") {
 
 TEST_CASE("a program that crashes on another rank ends the run as it does in one process") {
     const Workbench bench;
+    if (!works(bench)) return;
     Words words{kScenarios + "hello.toml", "--duration", "2", "--linux", PUCKLOOP_MISBEHAVE, "crash"};
     const Ended apart = run_on(bench, 2, "there", words);
     words.insert(words.begin() + 1, "--in-process");
@@ -100,6 +105,7 @@ TEST_CASE("a program that crashes on another rank ends the run as it does in one
 
 TEST_CASE("Ctrl-C at mpirun ends the run with a report") {
     const Workbench bench;
+    if (!works(bench)) return;
     Words words{kScenarios + "hello.toml", "--out", bench.out("o").string(), "--duration", "1000 s"};
     Process process(job(2, words), bench.folder());
     while (!std::filesystem::exists(bench.out("o") / "trace.csv") && runs(process.id())) {

@@ -190,7 +190,14 @@ const std::vector<std::string> kFolders = {
     "selftest/described",
     "selftest/emulate",
     "tools/cli",
+    "tools/files",
+    "tools/shell",
     "tools/bench",
+    "tools/campaigns",
+    "tools/chips",
+    "tools/gap",
+    "tools/records",
+    "tools/viewer",
     "tools",
 };
 

@@ -11,6 +11,7 @@
 #include "tools/bench/sound.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/other_programs.h"
 
 #include <fmt/format.h>
 
@@ -42,8 +43,7 @@ void run_bench(const BenchCommandOptions& options) {
 }  // namespace
 
 void declare_bench(Command& app, int& status) {
-    Command* command =
-        app.add_subcommand("bench", "measure the core and runs against a reference of this machine");
+    Command* command = app.add_subcommand("bench", about("bench"));
     auto options = std::make_shared<BenchCommandOptions>();
     BenchOptions& bench = options->bench;
     command

@@ -1,6 +1,6 @@
 #pragma once
-// A program that is one command of puckloop's, which puckloop becomes. It serves nodes too: what it does are
-// runs.
+// A program that has some commands of puckloop's, which puckloop becomes. It serves nodes too: what it does
+// are runs.
 
 #include "run/factory/node_process.h"
 #include "tools/cli/ample_stack.h"
@@ -12,13 +12,13 @@
 namespace puckloop::tools {
 
 /// Its main(): the exit status.
-template <DeclareCommand kDeclare>
+template <DeclareCommand... kDeclare>
 int command_program(int argc, char** argv) {
     const auto run = [](int count, char** words) {
         survive_file_size_limit();
         if (const auto status = serve_as_node(count, words)) return *status;
-        constexpr std::array<DeclareCommand, 1> kOnly{kDeclare};
-        return run_program(kOnly, {words + 1, words + count});
+        constexpr std::array kCommands{kDeclare...};
+        return run_program(kCommands, {words + 1, words + count});
     };
     return with_ample_stack(run, argc, argv);
 }

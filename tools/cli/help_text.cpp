@@ -83,6 +83,13 @@ std::string HelpText::make_subcommand(const CLI::App* command) const {
     return two_columns(command->get_display_name(true), command->get_description());
 }
 
+/// CLI11's, without the empty line that a hidden group leaves at the end.
+std::string HelpText::make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const {
+    std::string text = CLI::Formatter::make_help(command, std::move(name), mode);
+    if (const auto at = text.find("\n\n\n"); at != std::string::npos) text.erase(at, 1);
+    return text;
+}
+
 std::string HelpText::make_usage(const CLI::App* command, std::string name) const {
     std::string text = CLI::Formatter::make_usage(command, std::move(name));
     for (const auto& [theirs, ours] :

@@ -7,7 +7,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/commands/text_files.h"
+#include "tools/files/text_files.h"
 
 #include <fmt/format.h>
 

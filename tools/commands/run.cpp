@@ -21,15 +21,14 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
+#include "tools/cli/other_programs.h"
 #include "tools/cli/time_check.h"
 #include "tools/commands.h"
-#include "tools/commands/exec_view.h"
-#include "tools/guide/scenario_name.h"
+#include "tools/files/scenario_name.h"
+#include "tools/shell/client_run.h"
 #include "tools/shell/shell.h"
-#include "tools/viewer/client_run.h"
-#include "tools/viewer/serve.h"
 #include "traces/export.h"
-#include "view/server/http_server.h"
+#include "view/server/loopback_port.h"
 
 #include <fmt/format.h>
 
@@ -208,22 +207,15 @@ int run_driven(RunOptions& options) {
         if (!request.from.empty()) request = going_on(request);
         return set_up(request).out;
     };
-    const auto client = [&](const std::filesystem::path& folder) {
+    const auto client = [&](const std::filesystem::path& folder, pid_t run) {
         if (options.shell) return run_shell(folder);
-        serve_live(folder.string(), options.view_port, true);
-        return 0;
+        become_puckloop({"view", folder.string(), "--port", std::to_string(options.view_port),
+                         "--run-process", std::to_string(run)});
     };
     return run_with_client({[&] { return run_scenario_file(options); }, results, client});
 }
 
 }  // namespace
-
-int run_with_page(const std::filesystem::path& scenario) {
-    RunOptions options;
-    options.request.scenario = scenario;
-    options.view = true;
-    return run_driven(options);
-}
 
 void declare_run(Command& app, int& status) {
     declare_run_on(app, status, nullptr);
@@ -424,6 +416,7 @@ void declare_run_on(Command& app, int& status, cosim::NodeHosts* hosts) {
         "  puckloop run hello --duration 5s --record --fault \"drop link=robot0.uart at=2s\"");
     command->callback([options, &status] {
         // Before the run begins and writes over the results of another.
+        if (options->view) check_built("view", "--view");
         if (options->view) view::check_port(static_cast<std::uint16_t>(options->view_port), "--view-port");
         if (options->view_port != 0 && !options->view)
             throw InputError("", "--view-port", "there is no page", "--view with it");

@@ -17,6 +17,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
+#include "tools/cli/other_programs.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 
@@ -183,8 +184,7 @@ void analyse_folder(const FitRequest& request) {
 }  // namespace
 
 void declare_gap(Command& app, int& status) {
-    auto* command =
-        app.add_subcommand("gap", "simulation against measured data: what is wrong, why, and what is gained");
+    auto* command = app.add_subcommand("gap", about("gap"));
     auto request = std::make_shared<FitRequest>();
     command
         ->add_option("folder", request->folder,

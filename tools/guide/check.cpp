@@ -8,9 +8,9 @@
 #include "run/setup.h"
 #include "scenarios/argos/import.h"
 #include "tools/cli/command.h"
+#include "tools/files/scenario_name.h"
 #include "tools/guide/cost_estimate.h"
 #include "tools/guide/guide.h"
-#include "tools/guide/scenario_name.h"
 
 #include <fmt/format.h>
 

@@ -97,7 +97,7 @@ std::string run_page(int run, double time_s) {
     return fmt::format("{}{}/?t={:.6f}", kPrefix, run, time_s);
 }
 
-/// This program once more, with its output in a file.
+/// The command that makes its files, with its output in a file.
 class RunPages::Again {
   public:
     Again(std::vector<std::string> words, fs::path output) : output_(std::move(output)) {
@@ -112,7 +112,7 @@ class RunPages::Again {
         posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output_.c_str(),
                                          O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, 0600);
         posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-        const int error = jobs::start_self(std::move(words), actions, id_);
+        const int error = jobs::start_puckloop(std::move(words), actions, id_);
         if (error != 0) throw RunError(fmt::format("the run cannot be started: {}", std::strerror(error)));
     }
     ~Again() {

@@ -1,6 +1,7 @@
 #include "view/server/http_server.h"
 
 #include "base/error.h"
+#include "view/server/loopback_port.h"
 #include "view/server/web_socket.h"
 
 #include <boost/asio/ip/tcp.hpp>
@@ -48,25 +49,7 @@ void add_headers(http::response<http::string_body>& answer, bool own_style, std:
     answer.set(http::field::cache_control, "no-store");
 }
 
-void listen_at(tcp::acceptor& acceptor, std::uint16_t port, std::string_view option) {
-    const tcp::endpoint place(asio::ip::address_v4::loopback(), port);
-    boost::system::error_code error;
-    acceptor.open(place.protocol(), error);
-    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor.bind(place, error);
-    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-    if (error)
-        throw InputError("", option, fmt::format("{} cannot be listened to: {}", port, error.message()),
-                         "another port, or 0 for one that is free");
-}
-
 }  // namespace
-
-void check_port(std::uint16_t port, std::string_view option) {
-    asio::io_context context;
-    tcp::acceptor acceptor(context);
-    listen_at(acceptor, port, option);
-}
 
 struct HttpServer::Impl : std::enable_shared_from_this<HttpServer::Impl> {
     class Session;
@@ -79,7 +62,7 @@ struct HttpServer::Impl : std::enable_shared_from_this<HttpServer::Impl> {
           acceptor(context),
           signals(context, SIGINT, SIGTERM, SIGHUP),
           token(new_token()) {
-        listen_at(acceptor, port, "--port");
+        acceptor.assign(tcp::v4(), listen_at(port, "--port"));
         access.emplace(token, acceptor.local_endpoint().port());
     }
 

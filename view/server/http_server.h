@@ -23,9 +23,6 @@ struct ServerLimits {
     double feed_seconds = 1.0 / 30;   ///< between two messages of a feed, at least
 };
 
-/// Throws InputError, naming `option`, if this port of 127.0.0.1 is taken; 0 never is.
-void check_port(std::uint16_t port, std::string_view option);
-
 class HttpServer {
   public:
     using Get = std::function<std::optional<Content>(std::string_view target)>;
