@@ -92,7 +92,7 @@ std::string power_svg(const Power& power) {
             const Limits limits = limits_of(point.right, point.cases);
             chart.interval(x.back(), y.back(), limits.low, limits.high, colour);
         }
-        chart.line(x, y, colour, curve.effect.empty() ? "nothing hidden: no difference shown" : curve.effect,
+        chart.line(x, y, colour, curve.effect.empty() ? "nothing hidden" : curve.effect,
                    curve.effect.empty());
     }
     chart.categories(runs);
