@@ -185,3 +185,13 @@ function(puckloop_test name)
   endif()
   catch_discover_tests(${name} TEST_PREFIX "${name}: " ${properties})
 endfunction()
+
+# The sources of tests some at a time, too: an object's fixed cost is a third of a test's. Few, as who changes one compiles
+# all of them again. ALONE: what has file-level names that another file of the target has.
+set(PUCKLOOP_UNITY_TESTS 6)
+function(puckloop_unity_tests name)
+  cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
+  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${PUCKLOOP_UNITY} UNITY_BUILD_BATCH_SIZE ${PUCKLOOP_UNITY_TESTS})
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()
