@@ -119,7 +119,8 @@ class Packages(unittest.TestCase):
         self.assertLess(moved - start, 120)
         for words in ("list", "version", "check hello", "help run", "images", "disasm --help",
                       "run tam --duration 2", "run rab_pair --in-process --duration 2",
-                      "exec /usr/share/puckloop/firmware/rab/rab.hex --seconds 0.1"):
+                      "exec /usr/share/puckloop/firmware/rab/rab.hex --seconds 0.1", "trace out/hello",
+                      "view out/hello --export hello.html", "faults --help", "bench --help"):
             inside(f"cd /tmp/elsewhere && puckloop {words}", user="nobody:nogroup")
         self.assertIn("puckloop-gap", inside("cd /tmp/elsewhere && puckloop gap --help", status=2))
         inside("test -s /usr/share/man/man1/puckloop-run.1.gz")

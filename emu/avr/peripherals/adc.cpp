@@ -1,5 +1,7 @@
 #include "emu/avr/peripherals/adc.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,18 +10,17 @@ namespace puckloop::avr {
 
 namespace {
 
-constexpr int kVector = 24;
-constexpr std::uint16_t kAdcl = 0x78, kAdch = 0x79, kAdcsra = 0x7A, kAdcsrb = 0x7B, kAdmux = 0x7C,
-                        kPrr0 = 0x64;
+constexpr int kAdcVector = 24;
+constexpr std::uint16_t kAdcl = 0x78, kAdch = 0x79;
 // ADCSRA
-constexpr std::uint8_t kAden = bit(7), kAdsc = bit(6), kAdate = bit(5), kAdif = bit(4), kAdie = bit(3);
+constexpr std::uint8_t kAdsc = bit(6), kAdate = bit(5), kAdif = bit(4), kAdie = bit(3);
 constexpr std::uint8_t kAdlar = bit(5);  // ADMUX
 constexpr std::uint8_t kPradc = bit(0);  // PRR0
 constexpr unsigned kFreeRunning = 0;     // ADTS
 /// ADC clocks, in halves: sample and hold, and the end of the conversion (data sheet, "ADC Conversion Time").
 constexpr Cycle kFirstSample = 27, kFirstEnd = 50, kSample = 3, kEnd = 26, kTriggeredSample = 4,
                 kTriggeredEnd = 27;
-constexpr double kBandgap = 1.1, kInternalReference = 2.56;
+constexpr double kInternalReference = 2.56;
 
 /// MUX4:0 = 8..29 (data sheet 8272, table "Input Channel and Gain Selections").
 struct Differential {
@@ -47,7 +48,7 @@ Adc::Adc(const Surroundings& around, Pins& pins, const References& references)
     around_.io.hook(kAdcsra, this, nullptr, &write_control);
     around_.io.hook(kAdcsrb, this, nullptr, &write_source);
     around_.io.hook(kAdmux, this, nullptr, &write_mux);
-    around_.interrupts.connect(kVector, this, &acknowledge);
+    around_.interrupts.connect(kAdcVector, this, &acknowledge);
 }
 
 void Adc::reset() {
@@ -81,7 +82,7 @@ Cycle Adc::clocks_per_tick() const {
 }
 
 void Adc::update_request() {
-    around_.interrupts.request(kVector, (control() & kAdif) && (control() & kAdie));
+    around_.interrupts.request(kAdcVector, (control() & kAdif) && (control() & kAdie));
 }
 void Adc::acknowledge(void* owner, int) {
     auto& self = *static_cast<Adc*>(owner);

@@ -1,5 +1,7 @@
 #include "emu/avr/peripherals/clocked_usart.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include "protocols/uart_sampling.h"
 
 #include <bit>
@@ -7,7 +9,7 @@
 namespace puckloop::avr {
 
 namespace {
-constexpr std::uint8_t kSpiEdges = 16, kHighest = bit(7), kLowest = bit(0);
+constexpr std::uint8_t kSpiEdges = 16;
 constexpr PinUser kUser = PinUser::Serial;
 }  // namespace
 

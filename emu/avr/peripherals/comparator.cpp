@@ -1,25 +1,26 @@
 #include "emu/avr/peripherals/comparator.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include "emu/avr/peripherals/adc.h"
 #include "emu/avr/peripherals/timer.h"
 
 namespace puckloop::avr {
 
 namespace {
-constexpr int kVector = 23;
-constexpr std::uint16_t kAcsr = 0x50, kAdcsra = 0x7A, kAdcsrb = 0x7B, kAdmux = 0x7C;
+constexpr int kComparatorVector = 23;
+constexpr std::uint16_t kAcsr = 0x50;
 constexpr std::uint8_t kAcd = bit(7), kAcbg = bit(6), kAco = bit(5), kAci = bit(4), kAcie = bit(3),
                        kAcic = bit(2);
-constexpr std::uint8_t kAcme = bit(6), kAden = bit(7);
-constexpr double kBandgap = 1.1;
-constexpr unsigned kToggle = 0, kFalling = 2, kRising = 3;  // ACIS1:0
+constexpr std::uint8_t kAcme = bit(6);
+constexpr unsigned kOutputToggle = 0, kOutputFalling = 2, kOutputRising = 3;  // ACIS1:0
 constexpr unsigned kAdcTrigger = 1;
 }  // namespace
 
 Comparator::Comparator(const Surroundings& around, Pins& pins, Timer& capture, Adc& adc)
     : around_(around), pins_(pins), capture_(capture), adc_(adc) {
     around_.io.hook(kAcsr, this, &read_control, &write_control);
-    around_.interrupts.connect(kVector, this, &acknowledge);
+    around_.interrupts.connect(kComparatorVector, this, &acknowledge);
 }
 
 void Comparator::reset() {
@@ -28,7 +29,7 @@ void Comparator::reset() {
 }
 
 void Comparator::update_request() {
-    around_.interrupts.request(kVector, (control() & kAci) && (control() & kAcie));
+    around_.interrupts.request(kComparatorVector, (control() & kAci) && (control() & kAcie));
 }
 void Comparator::acknowledge(void* owner, int) {
     auto& self = *static_cast<Comparator*>(owner);
@@ -47,7 +48,8 @@ void Comparator::update() {
     if (output == static_cast<bool>(control() & kAco)) return;
     assign(control(), kAco, output);
     const unsigned select = field(control(), 1, 0);
-    if (select == kToggle || (select == kRising && output) || (select == kFalling && !output)) {
+    if (select == kOutputToggle || (select == kOutputRising && output) ||
+        (select == kOutputFalling && !output)) {
         control() |= kAci;
         update_request();
         adc_.trigger(kAdcTrigger);

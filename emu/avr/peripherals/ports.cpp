@@ -1,10 +1,11 @@
 #include "emu/avr/peripherals/ports.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 namespace puckloop::avr {
 
 namespace {
-constexpr std::uint16_t kMcucr = 0x55, kDidr0 = 0x7E, kDidr1 = 0x7F;
-constexpr std::uint8_t kPud = bit(4);
+constexpr std::uint16_t kDidr0 = 0x7E, kDidr1 = 0x7F;
 constexpr PortLetter kAll[] = {PortLetter::A, PortLetter::B, PortLetter::C, PortLetter::D};
 }  // namespace
 

@@ -1,19 +1,20 @@
 #include "emu/avr/peripherals/self_programming.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include <algorithm>
 
 namespace puckloop::avr {
 
 namespace {
-constexpr int kVector = 27;
-constexpr std::uint16_t kSpmcsr = 0x57, kOsccal = 0x66;
+constexpr int kSpmVector = 27;
+constexpr std::uint16_t kSpmcsr = 0x57;
 constexpr std::uint8_t kSpmie = bit(7), kRwwsb = bit(6), kSigrd = bit(5), kRwwsre = bit(4), kBlbset = bit(3),
                        kPgwrt = bit(2), kPgers = bit(1), kSpmen = bit(0);
 constexpr std::uint8_t kCommand = kSigrd | kRwwsre | kBlbset | kPgwrt | kPgers | kSpmen;
 constexpr std::uint8_t kBlb01 = bit(2), kBlb02 = bit(3), kBlb11 = bit(4), kBlb12 = bit(5);  // lock bits
 constexpr std::uint8_t kReadLocks = kBlb02 | kBlb12;
-constexpr std::uint16_t kErased = 0xFFFF;
-constexpr Cycle kArmed = 4;
+constexpr Cycle kSpmenArmed = 4;
 constexpr double kPageSeconds = 3.7e-3;
 constexpr std::uint32_t kNoReadWhileWriteWords = 4096;  ///< at the end of the flash
 }  // namespace
@@ -25,14 +26,14 @@ SelfProgramming::SelfProgramming(const Surroundings& around, Core& core, const c
       clock_(clock),
       fuses_(fuses),
       system_(system),
-      buffer_(core.device().page_words, kErased),
+      buffer_(core.device().page_words, kErasedWord),
       slot_(around.events.add(this, &due)) {
     around_.io.hook(kSpmcsr, this, &read_control, &write_control);
-    around_.interrupts.connect(kVector, this, nullptr);
+    around_.interrupts.connect(kSpmVector, this, nullptr);
 }
 
 void SelfProgramming::reset() {
-    std::fill(buffer_.begin(), buffer_.end(), kErased);
+    std::fill(buffer_.begin(), buffer_.end(), kErasedWord);
     armed_until_ = 0;
     busy_ = false;
     around_.events.cancel(slot_);
@@ -70,7 +71,7 @@ bool SelfProgramming::interrupts_locked() const {
 
 // SPM_READY requests while no operation is under way.
 void SelfProgramming::update_request() {
-    around_.interrupts.request(kVector, (control() & kSpmie) && !busy_ && around_.now >= armed_until_);
+    around_.interrupts.request(kSpmVector, (control() & kSpmie) && !busy_ && around_.now >= armed_until_);
 }
 
 // The command bits read back until the SPM, four clocks at most, or until the operation is over.
@@ -87,7 +88,7 @@ void SelfProgramming::write_control(void* owner, std::uint16_t, std::uint8_t val
         self.control() = merged(self.control(), value, kSpmie);
     } else {
         self.control() = static_cast<std::uint8_t>((self.control() & kRwwsb) | (value & (kCommand | kSpmie)));
-        if (value & kSpmen) self.armed_until_ = self.around_.now + 1 + kArmed;
+        if (value & kSpmen) self.armed_until_ = self.around_.now + 1 + kSpmenArmed;
     }
     self.update_request();
 }
@@ -120,19 +121,19 @@ std::string_view SelfProgramming::spm(std::uint32_t address, std::uint16_t word)
     case kPgers:
         if (!writable(page)) break;
         for (std::uint32_t i = 0; i < size; ++i)
-            core_.set_program(page + i, kErased);
+            core_.set_program(page + i, kErasedWord);
         begin(page);
         break;
     case kPgwrt:
         if (!writable(page)) break;
         for (std::uint32_t i = 0; i < size; ++i)
             core_.set_program(page + i, core_.program(page + i) & buffer_[i]);
-        std::fill(buffer_.begin(), buffer_.end(), kErased);
+        std::fill(buffer_.begin(), buffer_.end(), kErasedWord);
         begin(page);
         break;
     case kRwwsre:
         control() &= static_cast<std::uint8_t>(~kRwwsb);
-        std::fill(buffer_.begin(), buffer_.end(), kErased);
+        std::fill(buffer_.begin(), buffer_.end(), kErasedWord);
         break;
     case kBlbset:
         fuses_.lock &= static_cast<std::uint8_t>(word | 0xC3);  // BLB bits only, and only downward

@@ -1,16 +1,18 @@
 #include "emu/avr/peripherals/spi.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 namespace puckloop::avr {
 
 namespace {
-constexpr int kVector = 19;
-constexpr std::uint16_t kSpcr = 0x4C, kSpsr = 0x4D, kSpdr = 0x4E, kPrr0 = 0x64;
+constexpr int kSpiVector = 19;
+constexpr std::uint16_t kSpcr = 0x4C, kSpsr = 0x4D, kSpdr = 0x4E;
 constexpr std::uint8_t kSpie = bit(7), kSpe = bit(6), kDord = bit(5), kMstr = bit(4), kCpol = bit(3),
                        kCpha = bit(2);                                   // SPCR
 constexpr std::uint8_t kSpif = bit(7), kWcol = bit(6), kSpi2x = bit(0);  // SPSR
 constexpr std::uint8_t kPrspi = bit(2);                                  // PRR0
 constexpr Cycle kDividers[] = {4, 16, 64, 128};                          // SPR1:0
-constexpr std::uint8_t kEdges = 16, kHighest = bit(7), kLowest = bit(0);
+constexpr std::uint8_t kEdges = 16;
 constexpr Pin kSs{PortLetter::B, 4}, kMosi{PortLetter::B, 5}, kMiso{PortLetter::B, 6}, kSck{PortLetter::B, 7};
 }  // namespace
 
@@ -19,7 +21,7 @@ Spi::Spi(const Surroundings& around, Ports& ports, Pins& pins)
     around_.io.hook(kSpcr, this, nullptr, &write_control);
     around_.io.hook(kSpsr, this, &read_status, &write_status);
     around_.io.hook(kSpdr, this, &read_data, &write_data);
-    around_.interrupts.connect(kVector, this, &acknowledge);
+    around_.interrupts.connect(kSpiVector, this, &acknowledge);
     ports_.listen(this, &pins_changed);
     ports_.listen_drivers(this, &drivers_changed);
 }
@@ -43,7 +45,7 @@ bool Spi::powered() const {
 }
 
 void Spi::update_request() {
-    around_.interrupts.request(kVector, (status() & kSpif) && (control() & kSpie));
+    around_.interrupts.request(kSpiVector, (status() & kSpif) && (control() & kSpie));
 }
 void Spi::acknowledge(void* owner, int) {
     auto& self = *static_cast<Spi*>(owner);

@@ -1,22 +1,22 @@
 #include "emu/avr/peripherals/system_control.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace puckloop::avr {
 
 namespace {
-constexpr std::uint16_t kOcdr = 0x51, kSmcr = 0x53, kMcusr = 0x54, kMcucr = 0x55, kClkpr = 0x61, kPrr0 = 0x64,
-                        kPrr1 = 0x65, kOsccal = 0x66, kAssr = 0xB6;
-constexpr std::uint8_t kSe = bit(0);                                                     // SMCR
-constexpr std::uint8_t kPorf = bit(0), kExtrf = bit(1), kBorf = bit(2), kWdrf = bit(3);  // MCUSR
-constexpr std::uint8_t kJtd = bit(7), kBods = bit(6), kBodse = bit(5), kPud = bit(4), kIvsel = bit(1),
+constexpr std::uint16_t kOcdr = 0x51, kSmcr = 0x53, kClkpr = 0x61, kPrr1 = 0x65, kAssr = 0xB6;
+constexpr std::uint8_t kSe = bit(0);                                     // SMCR
+constexpr std::uint8_t kPorf = bit(0), kExtrf = bit(1), kBorf = bit(2);  // MCUSR
+constexpr std::uint8_t kJtd = bit(7), kBods = bit(6), kBodse = bit(5), kIvsel = bit(1),
                        kIvce = bit(0);  // MCUCR
-constexpr std::uint8_t kAs2 = bit(5);   // ASSR
 constexpr Cycle kBrownOutSleep = 3;     ///< clocks in which SLEEP must follow BODS
 constexpr double kBrownOutStartUp = 60e-6;
 constexpr std::uint8_t kClkpce = bit(7);  // CLKPR
-constexpr Cycle kChangeable = 4;
+constexpr Cycle kClkpceArmed = 4;
 constexpr unsigned kSlowest = 8, kByEight = 3;  // CLKPS
 }  // namespace
 
@@ -168,9 +168,9 @@ void SystemControl::write_mcucr(void* owner, std::uint16_t address, std::uint8_t
     const auto written = static_cast<std::uint8_t>(value & mask);
     const std::uint8_t old = self.around_.io.raw(address);
     const auto changeable = static_cast<std::uint8_t>(now < self.vectors_changeable_until_ ? kIvsel : 0);
-    self.vectors_changeable_until_ = written & kIvce ? now + 1 + kChangeable : 0;
+    self.vectors_changeable_until_ = written & kIvce ? now + 1 + kClkpceArmed : 0;
     if (written & kIvce)
-        self.interrupts_held_until_ = now + 1 + kChangeable;
+        self.interrupts_held_until_ = now + 1 + kClkpceArmed;
     else if (changeable)
         self.interrupts_held_until_ = now + 2;
 
@@ -180,11 +180,11 @@ void SystemControl::write_mcucr(void* owner, std::uint16_t address, std::uint8_t
         if (now < self.jtag_until_ && wanted == self.jtag_wanted_)
             jtd = kJtd;
         else
-            self.jtag_until_ = now + 1 + kChangeable;
+            self.jtag_until_ = now + 1 + kClkpceArmed;
         self.jtag_wanted_ = wanted;
     }
     if ((written & kBods) && (written & kBodse))
-        self.brown_out_from_ = now + 1 + kChangeable;
+        self.brown_out_from_ = now + 1 + kClkpceArmed;
     else if ((written & kBods) && now < self.brown_out_from_)
         self.brown_out_until_ = now + 1 + kBrownOutSleep;
     self.around_.io.store(address, value, mask & (kPud | changeable | jtd));
@@ -208,7 +208,7 @@ void SystemControl::set_divider(unsigned select) {
 void SystemControl::write_prescaler(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
     auto& self = *static_cast<SystemControl*>(owner);
     if (value == kClkpce)
-        self.changeable_until_ = self.around_.now + 1 + kChangeable;
+        self.changeable_until_ = self.around_.now + 1 + kClkpceArmed;
     else if (!(value & kClkpce) && self.around_.now < self.changeable_until_)
         self.set_divider(field(value, 3, 0));
 }

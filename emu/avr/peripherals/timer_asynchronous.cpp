@@ -3,12 +3,14 @@
 
 #include "emu/avr/peripherals/timer.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include <algorithm>
 
 namespace puckloop::avr {
 
 namespace {
-constexpr std::uint8_t kExclk = bit(6), kAs2 = bit(5);  // ASSR; below them the update flags
+constexpr std::uint8_t kExclk = bit(6);  // ASSR; below them the update flags
 constexpr std::uint64_t kEdgesToUpdate = 2;
 enum UpdateOf : int { kControlB, kControlA, kCompareB, kCompareA, kCount };
 }  // namespace

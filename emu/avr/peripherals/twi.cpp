@@ -1,5 +1,7 @@
 #include "emu/avr/peripherals/twi.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include "cosim/i2c/i2c_shared.h"
 
 #include <utility>
@@ -8,11 +10,10 @@ namespace puckloop::avr {
 
 namespace {
 
-using Kind = cosim::I2cPhaseKind;
+using PhaseKind = cosim::I2cPhaseKind;
 
-constexpr int kVector = 26;
-constexpr std::uint16_t kTwbr = 0xB8, kTwsr = 0xB9, kTwar = 0xBA, kTwdr = 0xBB, kTwcr = 0xBC, kTwamr = 0xBD,
-                        kPrr0 = 0x64;
+constexpr int kTwiVector = 26;
+constexpr std::uint16_t kTwbr = 0xB8, kTwsr = 0xB9, kTwar = 0xBA, kTwdr = 0xBB, kTwcr = 0xBC, kTwamr = 0xBD;
 constexpr std::uint8_t kPrtwi = bit(7);  // PRR0
 constexpr std::uint8_t kTwint = bit(7), kTwea = bit(6), kTwsta = bit(5), kTwsto = bit(4), kTwwc = bit(3),
                        kTwen = bit(2), kTwie = bit(0);
@@ -43,7 +44,7 @@ Twi::Twi(const Surroundings& around, const cosim::ClockDomain& clock, Ports& por
     around_.io.hook(kTwsr, this, nullptr, &write_status);
     around_.io.hook(kTwdr, this, nullptr, &write_data);
     around_.io.hook(kTwcr, this, nullptr, &write_control);
-    around_.interrupts.connect(kVector, this, nullptr);
+    around_.interrupts.connect(kTwiVector, this, nullptr);
 }
 
 // A master whose byte is under way, or waits for this unit to let SCL go, finds nobody for the rest of it.
@@ -72,7 +73,7 @@ void Twi::plan(Step step, Cycle at) {
 }
 
 void Twi::update_request() {
-    around_.interrupts.request(kVector, (control() & kTwint) && (control() & kTwie));
+    around_.interrupts.request(kTwiVector, (control() & kTwint) && (control() & kTwie));
 }
 
 /// TWSR holds a status while TWINT is set, at all other times 0xF8.
@@ -123,7 +124,7 @@ void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
             self.ports_.release_value(kSda, PinUser::Serial);
             self.ports_.release_direction(kScl);
             self.ports_.release_direction(kSda);
-            if (self.state_.owner) self.begin_phase(Kind::Stop, 0, false);
+            if (self.state_.owner) self.begin_phase(PhaseKind::Stop, 0, false);
             const bool taken = self.state_.bus_taken;
             self.reset();
             self.state_.bus_taken = self.state_.bus_taken || taken;
@@ -138,7 +139,7 @@ void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
 
 // ---- master
 
-void Twi::begin_phase(Kind kind, std::uint8_t byte, bool acknowledge) {
+void Twi::begin_phase(PhaseKind kind, std::uint8_t byte, bool acknowledge) {
     cosim::I2cPhase& phase = state_.phase;
     phase = {};
     phase.kind = kind;
@@ -147,7 +148,7 @@ void Twi::begin_phase(Kind kind, std::uint8_t byte, bool acknowledge) {
     phase.start = clock_.time_of(around_.now + 1);
     phase.clock_period = clock_.time_of(around_.now + 1 + period()) - phase.start;
     state_.first_bit_asked = false;
-    state_.awaiting = kind != Kind::Stop;
+    state_.awaiting = kind != PhaseKind::Stop;
     pins_.twi_phase(phase);
 }
 
@@ -194,15 +195,15 @@ void Twi::go_on() {
     switch (state_code()) {
     case kStarted:
     case kRepeated:
-        return begin_phase(Kind::Start, data(), false);
+        return begin_phase(PhaseKind::Start, data(), false);
     case kMtAddressAck:
     case kMtAddressNack:
     case kMtDataAck:
     case kMtDataNack:
-        return begin_phase(Kind::Write, data(), false);
+        return begin_phase(PhaseKind::Write, data(), false);
     case kMrAddressAck:
     case kMrDataAck:
-        return begin_phase(Kind::Read, 0, control() & kTwea);
+        return begin_phase(PhaseKind::Read, 0, control() & kTwea);
     default:
         return;
     }
@@ -213,7 +214,7 @@ void Twi::end_transfer(Cycle next) {
     if (!(control() & kTwsto)) return start(state_.owner, next);
     if (state_code() == kBusError) state_.owner = false;  // the lines are released, without a STOP
     const bool waits = state_.owner && state_.shared;     // SCL rises when the other master lets it
-    if (state_.owner) begin_phase(Kind::Stop, 0, false);
+    if (state_.owner) begin_phase(PhaseKind::Stop, 0, false);
     state_.awaiting = waits;
     if (waits) return;
     plan(Step::StopSent, next + period());
@@ -223,14 +224,14 @@ void Twi::end_transfer(Cycle next) {
 bool Twi::asks_first_bit() {
     const unsigned code = state_code();
     if (!state_.owner || state_.shared || (code != kMrAddressAck && code != kMrDataAck)) return false;
-    begin_phase(Kind::Acknowledge, 0, true);  // kNoByteFollows
+    begin_phase(PhaseKind::Acknowledge, 0, true);  // kNoByteFollows
     state_.first_bit_asked = true;
     return true;
 }
 
 void Twi::answer(const cosim::I2cPhase& phase) {
     if (!state_.awaiting) return;
-    if (std::exchange(state_.first_bit_asked, false) && phase.kind != Kind::BusLost) {
+    if (std::exchange(state_.first_bit_asked, false) && phase.kind != PhaseKind::BusLost) {
         state_.awaiting = false;
         return end_transfer(around_.now);
     }
@@ -238,25 +239,25 @@ void Twi::answer(const cosim::I2cPhase& phase) {
         state_.shared = true;
         return;
     }
-    const bool is_byte = state_.phase.kind != Kind::Stop && state_.phase.kind != Kind::Acknowledge;
-    if (phase.kind == Kind::BusLost && is_byte && state_.step == Step::None) {
+    const bool is_byte = state_.phase.kind != PhaseKind::Stop && state_.phase.kind != PhaseKind::Acknowledge;
+    if (phase.kind == PhaseKind::BusLost && is_byte && state_.step == Step::None) {
         const Cycle over = clock_.first_cycle_at(state_.phase.start) + kClocksOfByte * period();
         if (over > around_.now) return answer_at(phase, over);
     }
     state_.awaiting = false;
-    if (phase.kind == Kind::BusLost) state_.shared = false;
-    if (!is_byte && phase.kind != Kind::BusLost) return plan(Step::StopSent, around_.now);
+    if (phase.kind == PhaseKind::BusLost) state_.shared = false;
+    if (!is_byte && phase.kind != PhaseKind::BusLost) return plan(Step::StopSent, around_.now);
     const bool reads = state_.phase.byte & kRead;
     switch (state_.phase.kind) {
-    case Kind::Start:
-        if (!phase.ack && phase.kind != Kind::BusLost) {
+    case PhaseKind::Start:
+        if (!phase.ack && phase.kind != PhaseKind::BusLost) {
             const unsigned address = state_.phase.byte >> 1;
             refused_[address / 64] |= std::uint64_t{1} << address % 64;
         }
         state_.next_status = reads ? (phase.ack ? kMrAddressAck : kMrAddressNack)
                                    : (phase.ack ? kMtAddressAck : kMtAddressNack);
         break;
-    case Kind::Write:
+    case PhaseKind::Write:
         state_.next_status = phase.ack ? kMtDataAck : kMtDataNack;
         break;
     default:
@@ -264,7 +265,7 @@ void Twi::answer(const cosim::I2cPhase& phase) {
         if (is_byte) data() = phase.byte;
         break;
     }
-    if (phase.kind == Kind::BusLost) {
+    if (phase.kind == PhaseKind::BusLost) {
         if (is_byte) data() = phase.byte;  // shifted in as by a slave
         state_.next_status = kLost;
         assign(control(), kTwsto, false);
@@ -343,9 +344,9 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
         due(this, around_.now);
     }
     // The ninth clock of a byte: the masters of this unit state it with the Read.
-    if (phase.kind == Kind::Acknowledge && phase.ack == 0) return;
+    if (phase.kind == PhaseKind::Acknowledge && phase.ack == 0) return;
     const bool was_slave = state_.slave;
-    const bool ends = phase.kind == Kind::Stop || phase.kind == Kind::Start;
+    const bool ends = phase.kind == PhaseKind::Stop || phase.kind == PhaseKind::Start;
     state_.lost = false;
     const bool in_address = around_.now < std::exchange(state_.address_ends, Cycle{0});
     if (ends && state_.step == Step::SlaveAnswer && !was_slave) {  // a byte that TWSTO has left
@@ -357,10 +358,10 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
         state_.awaiting = state_.owner = false;
         around_.events.cancel(slot_);
         state_.step = Step::None;
-        state_.lost = phase.kind == Kind::Start && state_.phase.kind == Kind::Start;
+        state_.lost = phase.kind == PhaseKind::Start && state_.phase.kind == PhaseKind::Start;
         if (!state_.lost) interrupt(kBusError);
     }
-    if (phase.kind == Kind::Start) {
+    if (phase.kind == PhaseKind::Start) {
         state_.bus_taken = true;
         if (state_.step == Step::StartSent && !state_.owner) {  // the other was quicker
             state_.step = Step::None;
@@ -368,13 +369,13 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
             state_.start_waits = true;
         }
     }
-    if (phase.kind == Kind::Stop || phase.kind == Kind::Start) {
+    if (phase.kind == PhaseKind::Stop || phase.kind == PhaseKind::Start) {
         state_.slave = state_.slave_waits = false;
         const bool hears_stop =
             was_slave && state_code() < kStAddress;  // a receiver does, repeated START too
         state_.stop_waits = hears_stop && (control() & kTwint);
         if (hears_stop && !state_.stop_waits) interrupt(kSrStop);
-        if (phase.kind == Kind::Stop) return bus_free();
+        if (phase.kind == PhaseKind::Stop) return bus_free();
         // TWEA counts when the byte is over; a program that serves the STOP before has until then.
         state_.slave = addressed(phase.byte, state_.general_call) &&
                        ((control() & kTwea) || state_.stop_waits || hears_stop);
@@ -410,9 +411,9 @@ void Twi::begin_slave_phase() {
 void Twi::finish_slave_phase(Cycle now) {
     if (!state_.slave) return refuse(state_.phase);  // TWSTO came meanwhile
     cosim::I2cPhase answer = state_.phase;
-    answer.kind = Kind::Acknowledge;
+    answer.kind = PhaseKind::Acknowledge;
     switch (state_.phase.kind) {
-    case Kind::Start:
+    case PhaseKind::Start:
         if (!(control() & kTwea)) return refuse_address();
         answer.ack = 1;
         data() = state_.phase.byte;
@@ -424,7 +425,7 @@ void Twi::finish_slave_phase(Cycle now) {
                                  : (state_.phase.byte & kRead) ? kLostStAddress
                                                                : kLostSrAddress;
         break;
-    case Kind::Acknowledge:  // no byte follows: what is on SDA once SCL is free
+    case PhaseKind::Acknowledge:  // no byte follows: what is on SDA once SCL is free
         answer.ack = state_.sends && !(data() & kFirstBit) ? 1 : 0;
         return pins_.twi_slave_answer(answer);
     default:
@@ -437,8 +438,8 @@ void Twi::finish_slave_phase(Cycle now) {
 
 /// Who sends was agreed with the address, whatever the master does.
 void Twi::finish_slave_byte(cosim::I2cPhase& answer) {
-    const bool writes = state_.phase.kind == Kind::Write;
-    if (!writes) answer.kind = Kind::Data;
+    const bool writes = state_.phase.kind == PhaseKind::Write;
+    if (!writes) answer.kind = PhaseKind::Data;
     if (!state_.sends) {
         answer.ack = control() & kTwea ? 1 : 0;
         data() = answer.byte = writes ? state_.phase.byte : kReleased;
@@ -458,9 +459,9 @@ void Twi::bus_error(const cosim::I2cPhase& phase) {
     around_.events.cancel(slot_);
     state_.step = Step::None;
     state_.slave = state_.slave_waits = state_.stop_waits = false;
-    state_.bus_taken = phase.kind == Kind::Start;
+    state_.bus_taken = phase.kind == PhaseKind::Start;
     interrupt(kBusError);
-    if (phase.kind == Kind::Stop) return bus_free();
+    if (phase.kind == PhaseKind::Stop) return bus_free();
     refuse(phase);
 }
 
@@ -489,7 +490,7 @@ void Twi::refuse_address() {
 
 /// Nobody is here.
 void Twi::refuse(cosim::I2cPhase phase) {
-    phase.kind = phase.kind == Kind::Read ? Kind::Data : Kind::Acknowledge;
+    phase.kind = phase.kind == PhaseKind::Read ? PhaseKind::Data : PhaseKind::Acknowledge;
     phase.byte = kReleased;
     phase.ack = 0;
     pins_.twi_slave_answer(phase);

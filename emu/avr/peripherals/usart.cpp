@@ -1,5 +1,7 @@
 #include "emu/avr/peripherals/usart.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include "protocols/uart_sampling.h"
 
 #include <bit>
@@ -18,9 +20,8 @@ constexpr std::uint8_t kRxcie = bit(7), kTxcie = bit(6), kUdrie = bit(5), kRxen 
                        kUcsz2 = bit(2), kRxb8 = bit(1), kTxb8 = bit(0);
 // UCSRnC
 constexpr std::uint8_t kUsbs = bit(3), kUdord = bit(2), kUcpha = bit(1), kUcpol = bit(0);
-enum Mode : unsigned { kAsynchronous, kSynchronous, kReserved, kSpiMaster };  // UMSELn
+enum UsartMode : unsigned { kAsynchronous, kSynchronous, kReserved, kSpiMaster };  // UMSELn
 
-constexpr std::uint16_t kPrr0 = 0x64;
 constexpr std::uint16_t kNinthBit = bit(7) << 1;
 constexpr std::size_t kFifo = 2;
 

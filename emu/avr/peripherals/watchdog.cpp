@@ -1,15 +1,16 @@
 #include "emu/avr/peripherals/watchdog.h"
 
+#include "emu/avr/peripherals/shared_registers.h"
+
 #include <algorithm>
 
 namespace puckloop::avr {
 
 namespace {
-constexpr int kVector = 8;
-constexpr std::uint16_t kWdtcsr = 0x60, kMcusr = 0x54;
+constexpr int kWatchdogVector = 8;
+constexpr std::uint16_t kWdtcsr = 0x60;
 constexpr std::uint8_t kWdif = bit(7), kWdie = bit(6), kWdce = bit(4), kWde = bit(3), kWdp = 0x27;
-constexpr std::uint8_t kWdrf = bit(3);  // MCUSR
-constexpr Cycle kChangeable = 4;
+constexpr Cycle kWdceArmed = 4;
 constexpr double kOscillator = 128e3;
 constexpr unsigned kShortest = 2048, kLongestSelect = 9;
 }  // namespace
@@ -17,7 +18,7 @@ constexpr unsigned kShortest = 2048, kLongestSelect = 9;
 Watchdog::Watchdog(const Surroundings& around, Core& core, const cosim::ClockDomain& clock)
     : around_(around), core_(core), clock_(clock), slot_(around.events.add(this, &due)) {
     around_.io.hook(kWdtcsr, this, nullptr, &write_control);
-    around_.interrupts.connect(kVector, this, &acknowledge);
+    around_.interrupts.connect(kWatchdogVector, this, &acknowledge);
 }
 
 void Watchdog::reset(bool always_on) {
@@ -61,7 +62,7 @@ void Watchdog::change_period(std::uint8_t old, Cycle now) {
 }
 
 void Watchdog::update_request() {
-    around_.interrupts.request(kVector, (control() & kWdif) && (control() & kWdie));
+    around_.interrupts.request(kWatchdogVector, (control() & kWdif) && (control() & kWdie));
 }
 
 // With both modes on, the routine's entry leaves the interrupt mode: the next time-out resets.
@@ -98,7 +99,7 @@ void Watchdog::write_control(void* owner, std::uint16_t, std::uint8_t value, std
         next |= value & mask & kWde;  // setting it needs no sequence
     if (self.always_on_ || (self.around_.io.raw(kMcusr) & kWdrf)) next |= kWde;
     if (self.always_on_) assign(next, kWdie, false);
-    if ((value & mask & kWdce) && (value & mask & kWde)) self.changeable_until_ = now + 1 + kChangeable;
+    if ((value & mask & kWdce) && (value & mask & kWde)) self.changeable_until_ = now + 1 + kWdceArmed;
     self.control() = static_cast<std::uint8_t>(next & ~kWdce);
     if ((old ^ self.control()) & (kWde | kWdie | kWdp)) self.change_period(old, now + 1);
     self.update_request();
