@@ -19,12 +19,6 @@ double half_log(double value) {
     return std::log(value) / 2;
 }
 
-/// ln of Student's density at z of unit scale.
-double log_density(double z, double tail) {
-    return std::lgamma((tail + 1) / 2) - std::lgamma(tail / 2) - half_log(tail * std::numbers::pi) -
-           (tail + 1) / 2 * std::log1p(z * z / tail);
-}
-
 double log_likelihood_of(const Whitening& whitening, const std::vector<double>& z, double sd, double tail) {
     double sum = 0.0, rows = 0.0;
     for (std::size_t i = 0; i < z.size(); ++i)
@@ -32,7 +26,8 @@ double log_likelihood_of(const Whitening& whitening, const std::vector<double>& 
             sum += std::log1p(z[i] * z[i] / (sd * sd * tail));
             rows += 1;
         }
-    return rows * log_density(0.0, tail) - (tail + 1) / 2 * sum - rows * std::log(sd) - whitening.log_sizes();
+    return rows * student_log_density(0.0, tail) - (tail + 1) / 2 * sum - rows * std::log(sd) -
+           whitening.log_sizes();
 }
 
 /// The size of Student's law that these innovations have.
@@ -58,6 +53,11 @@ std::vector<double> whitened(const Whitening& whitening, std::span<const double>
 }
 
 }  // namespace
+
+double student_log_density(double z, double tail) {
+    return std::lgamma((tail + 1) / 2) - std::lgamma(tail / 2) - half_log(tail * std::numbers::pi) -
+           (tail + 1) / 2 * std::log1p(z * z / tail);
+}
 
 Whitening::Whitening(const ErrorsLaw& law, std::span<const char> known, std::span<const char> starts)
     : sums_(law.sums), carry_(law.number) {
@@ -141,7 +141,8 @@ std::vector<double> row_costs_of(const ErrorsLaw& law, std::span<const double> e
     std::vector<double> costs(z.size(), 0.0);
     for (std::size_t i = 0; i < z.size(); ++i)
         if (whitening.scale(i) > 0)
-            costs[i] = std::log(law.sd) - std::log(whitening.scale(i)) - log_density(z[i] / law.sd, law.tail);
+            costs[i] = std::log(law.sd) - std::log(whitening.scale(i)) -
+                       student_log_density(z[i] / law.sd, law.tail);
     return costs;
 }
 

@@ -41,6 +41,8 @@ class Whitening {
     double log_sizes_ = 0.0;
 };
 
+/// ln of Student's density at z of unit scale.
+double student_log_density(double z, double tail);
 /// The law under which these errors are likeliest, its size and tail fitted, numbers from a grid.
 ErrorsLaw law_of(bool sums, std::span<const double> errors, std::span<const char> known,
                  std::span<const char> starts);

@@ -2,6 +2,7 @@
 
 #include "gap/diagnostics/heldout.h"
 #include "gap/extension/formula.h"
+#include "gap/extension/held_costs.h"
 #include "gap/extension/learn.h"
 #include "gap/fit/parallel.h"
 #include "physics/description/extension.h"
@@ -45,22 +46,6 @@ struct HeldRows {
     std::vector<double> before, named, extended;  // errors
     std::vector<double> cost_named, cost_extended;
 };
-
-std::vector<char> known_rows(const std::vector<double>& errors) {
-    std::vector<char> known;
-    for (const double one : errors)
-        known.push_back(std::isfinite(one) ? 1 : 0);
-    return known;
-}
-
-std::vector<double> costs_beside(const ErrorsLaw& law, const Subject& subject,
-                                 const std::vector<double>& added) {
-    const auto known = known_rows(subject.error);
-    std::vector<double> errors(subject.error.size(), 0.0);
-    for (std::size_t i = 0; i < errors.size(); ++i)
-        if (known[i] != 0) errors[i] = subject.error[i] - (added.empty() ? 0.0 : added[i]);
-    return row_costs_of(law, errors, known, subject.starts);
-}
 
 class Extending {
   public:
@@ -117,9 +102,8 @@ class Extending {
                 used.push_back(one != static_cast<int>(fold) ? 1 : 0);
             const Learnt learnt = learnt_from(subject, used);
             const auto added = learnt.in_rows(subject);
-            const auto cost_named = costs_beside(learnt.law_without, subject, {}),
-                       cost_extended =
-                           learnt.parts.empty() ? cost_named : costs_beside(learnt.law, subject, added);
+            const auto cost_named = held_costs(subject, used, learnt, false),
+                       cost_extended = held_costs(subject, used, learnt, true);
             const Observable& observable = model.observables()[subject.observable];
             const std::size_t o = subject.observable;
             for (std::size_t i = 0; i < folds.size(); ++i) {

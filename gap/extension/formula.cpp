@@ -21,7 +21,20 @@ constexpr std::size_t kMostSummands = 3;
 constexpr double kAsWell = 3.0;      // nats: "not worth more than a bare mention" (Kass and Raftery 1995)
 constexpr double kLeastOwn = 1e-10;  // share of a column's squares that earlier ones leave: else it is theirs
 
-/// An elementary function of the covariates, a value a row.
+/// The moments of the rows that are looked at.
+struct RowMoments {
+    std::vector<std::size_t> all, end;  // and where each row's end among them
+
+    RowMoments(const Subject& subject, const LearningRows& rows) {
+        for (const std::size_t i : rows.row) {
+            for (std::size_t m = subject.moments[i]; m < subject.moments[i + 1]; ++m)
+                all.push_back(m);
+            end.push_back(all.size());
+        }
+    }
+};
+
+/// An elementary function of the covariates, a value a moment.
 struct Atom {
     std::string text;
     std::vector<double> value;
@@ -44,19 +57,19 @@ constexpr AtomForm kForms[] = {{"{}", [](double x) { return x; }, false, false},
                                {"sin({})", [](double x) { return std::sin(x); }, false, true},
                                {"cos({})", [](double x) { return std::cos(x); }, false, true}};
 
-std::vector<Atom> atoms_of_one(const WorldCovariate& covariate, const LearningRows& rows) {
+std::vector<Atom> atoms_of_one(const WorldCovariate& covariate, const RowMoments& moments) {
     std::vector<Atom> atoms;
     bool positive = true, signs = false;
-    for (const std::size_t i : rows.row) {
-        positive = positive && covariate.value[i] > 0;
-        signs = signs || covariate.value[i] < 0;
+    for (const std::size_t m : moments.all) {
+        positive = positive && covariate.value[m] > 0;
+        signs = signs || covariate.value[m] < 0;
     }
     for (const AtomForm& form : kForms) {
         if ((form.positive_only && !positive) || (form.of_angles && covariate.unit != "rad")) continue;
         if (std::string_view(form.text) == "|{}|" && !signs) continue;
         Atom atom{fmt::format(fmt::runtime(form.text), covariate.name), {}};
-        for (const std::size_t i : rows.row)
-            atom.value.push_back(form.of(covariate.value[i]));
+        for (const std::size_t m : moments.all)
+            atom.value.push_back(form.of(covariate.value[m]));
         atoms.push_back(std::move(atom));
     }
     return atoms;
@@ -70,7 +83,8 @@ Atom product(const Atom& a, const Atom& b) {
 }
 
 /// Of what the tables are over.
-std::vector<Atom> atoms_of(const Subject& subject, const LearningRows& rows, const Learnt& learnt) {
+std::vector<Atom> atoms_of(const Subject& subject, const LearningRows& rows, const RowMoments& moments,
+                           const Learnt& learnt) {
     std::set<std::size_t> over;
     bool by_sensor = false;
     for (const LearntPart& part : learnt.parts) {
@@ -80,10 +94,10 @@ std::vector<Atom> atoms_of(const Subject& subject, const LearningRows& rows, con
         if (shape.times >= 0) over.insert(static_cast<std::size_t>(shape.times));
         by_sensor = by_sensor || shape.by_sensor;
     }
-    std::vector<Atom> atoms{{"1", std::vector<double>(rows.row.size(), 1.0)}};
+    std::vector<Atom> atoms{{"1", std::vector<double>(moments.all.size(), 1.0)}};
     std::vector<std::vector<Atom>> single;
     for (const std::size_t c : over)
-        single.push_back(atoms_of_one(subject.covariates[c], rows));
+        single.push_back(atoms_of_one(subject.covariates[c], moments));
     for (std::size_t a = 0; a < single.size(); ++a) {
         atoms.insert(atoms.end(), single[a].begin(), single[a].end());
         for (std::size_t b = a + 1; b < single.size(); ++b)
@@ -96,20 +110,23 @@ std::vector<Atom> atoms_of(const Subject& subject, const LearningRows& rows, con
     for (int sensor = 0; sensor < subject.sensors; ++sensor)
         for (const Atom& one : atoms) {
             Atom own{fmt::format("{} (sensor {})", one.text, sensor), one.value};
-            for (std::size_t k = 0; k < own.value.size(); ++k)
-                if (subject.sensor[rows.row[k]] != sensor) own.value[k] = 0.0;
+            for (std::size_t k = 0, m = 0; k < rows.row.size(); ++k)
+                for (; m < moments.end[k]; ++m)
+                    if (subject.sensor[rows.row[k]] != sensor) own.value[m] = 0.0;
             all.push_back(std::move(own));
         }
     return all;
 }
 
 /// What the atom makes of the rows, as innovations times the root of their weights.
-VectorXd column_of(const Subject& subject, const LearningRows& rows, const Atom& atom,
-                   const Whitening& whitening, const VectorXd& weight) {
+VectorXd column_of(const Subject& subject, const LearningRows& rows, const RowMoments& moments,
+                   const Atom& atom, const Whitening& whitening, const VectorXd& weight) {
     std::vector<double> made(rows.row.size());
     double sum = 0.0;
-    for (std::size_t k = 0; k < made.size(); ++k) {
-        const double own = atom.value[k] * subject.span[rows.row[k]];
+    for (std::size_t k = 0, m = 0; k < made.size(); ++k) {
+        double own = 0.0;
+        for (; m < moments.end[k]; ++m)
+            own += atom.value[m] * subject.weight[moments.all[m]];
         sum = subject.sums ? (rows.starts[k] != 0 ? 0.0 : sum) + own : own;
         made[k] = sum;
     }
@@ -139,10 +156,11 @@ std::string formula_of(const Subject& subject, const std::vector<char>& used, co
     const VectorXd target = left.weight.cwiseSqrt().cwiseProduct(whole.z);
     // Both by Akaike's criterion: what they fit less the numbers that they take to do it.
     const double tables = -left.rows / 2 * std::log(left.squares) - learnt.freedom;
-    const auto atoms = atoms_of(subject, rows, learnt);
+    const RowMoments moments(subject, rows);
+    const auto atoms = atoms_of(subject, rows, moments, learnt);
     std::vector<VectorXd> columns;
     for (const Atom& atom : atoms)
-        columns.push_back(column_of(subject, rows, atom, whitening, left.weight));
+        columns.push_back(column_of(subject, rows, moments, atom, whitening, left.weight));
     // The next summand is the one that takes most of what is left; all factors are fitted anew.
     MatrixXd basis(target.size(), 0), chosen(target.size(), 0);
     std::vector<std::string> texts;

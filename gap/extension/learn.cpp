@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace puckloop::gap {
 
@@ -18,8 +19,12 @@ constexpr std::size_t kRowsToChoose = 3000;  // more are thinned
 constexpr std::size_t kLeastToLearn = 40;    // of fewer nothing is learnt
 constexpr std::size_t kMostParts = 5;        // tables of one term
 constexpr std::size_t kMostValues = 420;     // of all of them: what is fitted together
-constexpr double kClearly = 3.0;             // nats beyond ln(tables looked at)
-constexpr double kLengths[] = {0.25, 1.0};
+constexpr double kClearly = 3.0;             // nats beyond the price of having looked at many
+constexpr std::size_t kPlacesOfOne = 32;     // along an axis alone
+/// Along each of two: they are looked at coarsely, and finely where one of them joins.
+constexpr std::size_t kCoarsePlaces = 6, kFinePlaces = 12, kFinestPlaces = 18;
+constexpr double kCoarseLengths[] = {0.1, 0.4};
+constexpr double kFineLengths[] = {0.05, 0.12, 0.3, 1.0};  // of which evidence chooses
 constexpr double kCalmerCarry =
     0.3;  // of the carried share that is tried besides: what adds up looks like it
 constexpr double kCalmerWalk = 0.01;  // of a walk's variance, likewise
@@ -34,8 +39,9 @@ struct TableDesign {
     MatrixXd columns;
 };
 
-TableDesign design_of(const Subject& subject, const LearningRows& chosen, const TableBasis& basis,
-                      std::size_t table, const Whitening& whitening) {
+/// The same before it is whitened: all chosen rows.
+TableDesign plain_design(const Subject& subject, const LearningRows& chosen, const TableBasis& basis,
+                         std::size_t table) {
     const std::size_t n = chosen.row.size();
     TableDesign design;
     std::vector<char> own(n, 0);
@@ -49,12 +55,21 @@ TableDesign design_of(const Subject& subject, const LearningRows& chosen, const 
         const auto place = static_cast<Index>(k);
         if (subject.sums && k > 0 && chosen.starts[k] == 0) all.row(place) = all.row(place - 1);
         if (own[k] == 0) continue;
-        const RowWeights row = basis.row(subject, chosen.row[k]);
-        for (std::size_t c = 0; c < row.at.size(); ++c)
-            all(place, static_cast<Index>(row.at[c])) += row.weight[c];
+        basis.of_row(subject, chosen.row[k], [&](std::size_t value, double weight) {
+            all(place, static_cast<Index>(value)) += weight;
+        });
     }
+    design.columns = std::move(all);
+    return design;
+}
+
+TableDesign whitened(const TableDesign& plain, const Whitening& whitening) {
+    MatrixXd all = plain.columns;
+    const Index values = all.cols();
+    const auto n = static_cast<std::size_t>(all.rows());
     for (Index v = 0; v < values; ++v)
         whitening.apply({all.col(v).data(), n});
+    TableDesign design{plain.rows, {}};
     if (design.rows.size() == n) {
         design.columns = std::move(all);
         return design;
@@ -67,20 +82,63 @@ TableDesign design_of(const Subject& subject, const LearningRows& chosen, const 
 
 /// A table that may join, with the size at which it would.
 struct Offer {
-    std::size_t candidate = 0, setting = 0;
-    double length = 1.0, size = 0.0, score = -INFINITY;
+    TableShape shape;
+    std::size_t places = 0, setting = 0;  // setting: which law of errors
+    Kernel kernel{};
+    double size = 0.0, score = -INFINITY;
+};
+
+std::vector<Kernel> kernels_of(const TableBasis& basis, std::span<const double> each) {
+    if (basis.places().empty()) return {{}};  // one number has none
+    std::vector<Kernel> all;
+    for (const bool round : {true, false})
+        for (const double one : each)
+            for (const double other : each)
+                if ((round || basis.goes_round()) && (basis.places().size() > 1 || one == other))
+                    all.push_back({{one, other}, round});
+    return all;
+}
+
+/// A gram matrix G and a side s, turned so that any size of the prior costs no more than its diagonal is
+/// long.
+struct Tridiagonal {
+    VectorXd diagonal, beside, side;
+
+    Tridiagonal(const MatrixXd& gram, const VectorXd& of) {
+        if (gram.rows() == 1) {
+            diagonal = gram.diagonal();
+            side = of;
+            return;
+        }
+        const Eigen::Tridiagonalization<MatrixXd> turned(gram);
+        diagonal = turned.diagonal();
+        beside = turned.subDiagonal();
+        side = turned.matrixQ().adjoint() * of;
+    }
+
+    /// Adds ln det(1 + size G) and size s' (1 + size G)^-1 s.
+    void add(double size, double& log_det, double& taken) const {
+        double pivot = 1.0, carried = 0.0;  // no pivot is below 1: G has no negative direction
+        for (Index j = 0; j < diagonal.size(); ++j) {
+            const double next = j == 0 ? 0.0 : size * beside[j - 1], share = next / pivot;
+            pivot = std::max(1 + size * diagonal[j] - share * next, 1.0);
+            carried = side[j] - share * carried;
+            log_det += std::log(pivot);
+            taken += size * carried * carried / pivot;
+        }
+    }
 };
 
 /// The evidence of a table, tables of sensors or runs being of one size: the best size and kernel.
-void weigh(const Subject& subject, const LearningRows& chosen, const TableBasis& basis,
-           const Whitening& whitening, const Innovated& all, Offer& best, std::size_t candidate,
-           std::size_t setting) {
+void weigh(const TableBasis& basis, const std::vector<TableDesign>& tables,
+           const std::vector<Kernel>& kernels, const Whitening& whitening, const Innovated& all,
+           const Offer& as, Offer& best) {
     const auto m = static_cast<Index>(basis.values());
     std::vector<MatrixXd> grams;
     std::vector<VectorXd> sides;
-    for (std::size_t table = 0; table < basis.tables(); ++table) {
-        const TableDesign design = design_of(subject, chosen, basis, table, whitening);
-        if (design.rows.empty()) continue;
+    for (const TableDesign& table : tables) {
+        if (table.rows.empty()) continue;
+        const TableDesign design = whitened(table, whitening);
         VectorXd weight(design.columns.rows()), z(design.columns.rows());
         for (std::size_t k = 0; k < design.rows.size(); ++k) {
             weight[static_cast<Index>(k)] = all.weight[static_cast<Index>(design.rows[k])];
@@ -92,31 +150,26 @@ void weigh(const Subject& subject, const LearningRows& chosen, const TableBasis&
         grams.emplace_back(gram.selfadjointView<Eigen::Lower>());
         sides.emplace_back(design.columns.transpose() * weight.cwiseProduct(z));
     }
-    for (const double length : kLengths) {
-        if (basis.shape().over.empty() && length != kLengths[0]) continue;  // one number has none
-        const MatrixXd root = basis.root(length);
-        std::vector<double> eigen, side;
+    for (const Kernel& kernel : kernels) {
+        const MatrixXd root = basis.root(kernel);
+        std::vector<Tridiagonal> systems;
+        double trace = 0.0;
+        Index count = 0;
         for (std::size_t t = 0; t < grams.size(); ++t) {
-            const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(root.transpose() * grams[t] * root);
-            const VectorXd q = solved.eigenvectors().transpose() * (root.transpose() * sides[t]);
-            for (Index j = 0; j < q.size(); ++j) {
-                eigen.push_back(std::max(solved.eigenvalues()[j], 0.0));
-                side.push_back(q[j] * q[j]);
-            }
+            systems.emplace_back(root.transpose() * grams[t] * root, root.transpose() * sides[t]);
+            trace += systems.back().diagonal.sum();
+            count += m;
         }
-        const double mean = std::accumulate(eigen.begin(), eigen.end(), 0.0) /
-                            static_cast<double>(std::max<std::size_t>(eigen.size(), 1));
-        if (!(mean > 0)) continue;
+        if (!(trace > 0)) continue;
+        const double mean = trace / static_cast<double>(count);
         for (int k = 0; k < kSizes; ++k) {
             const double size = std::pow(10.0, -2.0 + 10.0 * k / (kSizes - 1)) / mean;
             double log_sum = 0.0, taken = 0.0;
-            for (std::size_t j = 0; j < eigen.size(); ++j) {
-                log_sum += std::log1p(size * eigen[j]);
-                taken += size * side[j] / (1 + size * eigen[j]);
-            }
+            for (const Tridiagonal& system : systems)
+                system.add(size, log_sum, taken);
             const double left = std::max(all.squares - taken, 1e-12 * all.squares);
             const double score = all.score(left) - log_sum / 2;
-            if (score > best.score) best = {candidate, setting, length, size, score};
+            if (score > best.score) best = {as.shape, as.places, as.setting, kernel, size, score};
         }
     }
 }
@@ -124,7 +177,33 @@ void weigh(const Subject& subject, const LearningRows& chosen, const TableBasis&
 /// All tables' values together, sizes by expectation and maximisation.
 struct Joint {
     double sd = 1.0, freedom = 0.0;
+    MatrixXd covariance;  // of all values but runs'
 };
+
+MatrixXd covariance_of(const std::vector<LearntPart>& parts, const std::vector<MatrixXd>& roots,
+                       const MatrixXd& inverse, double sd) {
+    struct Block {
+        Index from, to, size;
+        const MatrixXd* root;
+    };
+    std::vector<Block> blocks;
+    Index from = 0, to = 0;
+    for (std::size_t p = 0; p < parts.size(); ++p)
+        for (std::size_t table = 0; table < parts[p].basis.tables(); ++table) {
+            const auto size = static_cast<Index>(parts[p].basis.values());
+            if (!parts[p].basis.shape().by_run) {
+                blocks.push_back({from, to, size, &roots[p]});
+                to += size;
+            }
+            from += size;
+        }
+    MatrixXd all(to, to);
+    for (const Block& a : blocks)
+        for (const Block& b : blocks)
+            all.block(a.to, b.to, a.size, b.size) =
+                sd * sd * (*a.root * inverse.block(a.from, b.from, a.size, b.size) * b.root->transpose());
+    return all;
+}
 
 Joint fit_together(const Subject& subject, const LearningRows& chosen, const ErrorsLaw& law,
                    const std::vector<double>& error_now, std::vector<LearntPart>& parts) {
@@ -141,10 +220,10 @@ Joint fit_together(const Subject& subject, const LearningRows& chosen, const Err
     std::vector<MatrixXd> roots;
     Index first = 0;
     for (const LearntPart& part : parts) {
-        roots.push_back(part.basis.root(part.length));
+        roots.push_back(part.basis.root(part.kernel));
         const auto m = static_cast<Index>(part.basis.values());
         for (std::size_t table = 0; table < part.basis.tables(); ++table, first += m) {
-            const TableDesign design = design_of(subject, chosen, part.basis, table, whitening);
+            const TableDesign design = whitened(plain_design(subject, chosen, part.basis, table), whitening);
             const MatrixXd columns = design.columns * roots.back();
             for (std::size_t k = 0; k < design.rows.size(); ++k)
                 all.block(static_cast<Index>(design.rows[k]), first, 1, m) =
@@ -201,6 +280,7 @@ Joint fit_together(const Subject& subject, const LearningRows& chosen, const Err
             part.sd.segment(t * m, m) = joint.sd * spread.diagonal().cwiseMax(0.0).cwiseSqrt();
         }
     }
+    joint.covariance = covariance_of(parts, roots, inverse, joint.sd);
     return joint;
 }
 
@@ -214,10 +294,10 @@ std::vector<double> left_beside(const Subject& subject, const LearningRows& chos
         double own = 0.0;
         for (const LearntPart& part : parts) {
             if (runs_only && !part.basis.shape().by_run) continue;
-            const RowWeights row = part.basis.row(subject, chosen.row[k]);
             const std::size_t table = part.basis.table_of(subject, chosen.row[k]) * part.basis.values();
-            for (std::size_t c = 0; c < row.at.size(); ++c)
-                own += row.weight[c] * part.value[static_cast<Index>(table + row.at[c])];
+            part.basis.of_row(subject, chosen.row[k], [&](std::size_t value, double weight) {
+                own += weight * part.value[static_cast<Index>(table + value)];
+            });
         }
         sum = subject.sums ? (chosen.starts[k] != 0 ? 0.0 : sum) + own : own;
         if (chosen.known[k] != 0) left[k] -= sum;
@@ -299,7 +379,9 @@ class Learner {
         for (int round = 0; round < 2; ++round) {
             const auto left = left_beside(subject_, all, parts_);
             result.law = law_of(subject_.sums, left, all.known, all.starts);
-            result.freedom = fit_together(subject_, all, result.law, left, parts_).freedom;
+            Joint joint = fit_together(subject_, all, result.law, left, parts_);
+            result.freedom = joint.freedom;
+            result.covariance = std::move(joint.covariance);
         }
         result.law = law_of(subject_.sums, left_beside(subject_, all, parts_), all.known, all.starts);
         result.evidence = evidence_;
@@ -311,9 +393,11 @@ class Learner {
     /// Adds the table whose evidence is best, if it is enough.
     bool joined() {
         std::vector<ErrorsLaw> laws{law_};
-        ErrorsLaw calm = law_;
-        calm.number *= subject_.sums ? kCalmerWalk : kCalmerCarry;
-        if (calm.number != law_.number) laws.push_back(calm);
+        for (const double calmer : {subject_.sums ? kCalmerWalk : kCalmerCarry, 0.0})
+            if (law_.number > 0) {
+                laws.push_back(law_);
+                laws.back().number *= calmer;
+            }
         std::vector<Whitening> whitenings;
         std::vector<Innovated> innovations;
         double base = -INFINITY;
@@ -328,29 +412,55 @@ class Learner {
             base = std::max(base, innovations.back().score(innovations.back().squares));
         }
         Offer best;
-        std::vector<TableShape> shapes = single_shapes(subject_);
-        std::vector<double> scores;
-        const auto look = [&](const std::vector<TableShape>& those, std::size_t from) {
-            for (std::size_t k = 0; k < those.size(); ++k) {
-                Offer own;
-                const TableBasis basis(subject_, those[k], laid_);
-                const std::size_t size = basis.values() * basis.tables();
-                const bool there = std::ranges::any_of(
-                    parts_, [&](const LearntPart& part) { return part.basis.shape() == those[k]; });
-                if (!there && !basis.empty() && values() + size <= kMostValues)
-                    for (std::size_t s = 0; s < laws.size(); ++s)
-                        weigh(subject_, chosen_, basis, whitenings[s], innovations[s], own, from + k, s);
-                scores.push_back(own.score);
-                if (own.score > best.score) best = own;
-            }
+        // The best of a table of so many places; -infinity: it may not join.
+        const auto offer_of = [&](const TableShape& shape, std::size_t places, std::span<const double> each,
+                                  const Kernel* only = nullptr) {
+            Offer own;
+            const TableBasis basis(subject_, shape, laid_, places);
+            const std::size_t size = basis.values() * basis.tables();
+            const bool there = std::ranges::any_of(
+                parts_, [&](const LearntPart& part) { return part.basis.shape() == shape; });
+            if (there || basis.empty() || values() + size > kMostValues) return own;
+            std::vector<TableDesign> tables;
+            for (std::size_t table = 0; table < basis.tables(); ++table)
+                tables.push_back(plain_design(subject_, chosen_, basis, table));
+            for (std::size_t s = 0; s < laws.size(); ++s)
+                weigh(basis, tables, only != nullptr ? std::vector{*only} : kernels_of(basis, each),
+                      whitenings[s], innovations[s], {shape, places, s}, own);
+            return own;
         };
-        look(shapes, 0);
-        const auto pairs = pair_shapes(subject_, leading(shapes, scores, subject_.covariates.size()));
-        look(pairs, shapes.size());
-        shapes.insert(shapes.end(), pairs.begin(), pairs.end());
+        const auto finer = [&](Offer one, std::size_t places, bool as_smooth = false) {
+            const Offer own = offer_of(one.shape, places, kFineLengths, as_smooth ? &one.kernel : nullptr);
+            return own.score > one.score ? own : one;
+        };
+        // One covariate is as likely beforehand as two, and each table of its like, and each kernel of it.
+        const auto price = [&](const std::vector<TableShape>& like, const Offer& one) {
+            if (one.places == 0) return 0.0;
+            const auto kernels = kernels_of(TableBasis(subject_, one.shape, laid_, one.places), kFineLengths);
+            return std::log(2.0 * static_cast<double>(like.size() * kernels.size()));
+        };
+        const auto singles = single_shapes(subject_);
+        std::vector<double> scores;
+        for (const TableShape& shape : singles) {
+            const Offer own = offer_of(shape, kPlacesOfOne, kCoarseLengths);
+            scores.push_back(own.score);
+            if (own.score > best.score) best = own;
+        }
+        if (best.places > 0) best = finer(best, kPlacesOfOne);
+        const auto pairs = pair_shapes(subject_, leading(singles, scores, subject_.covariates.size()));
+        Offer pair;
+        for (const TableShape& shape : pairs) {
+            const Offer own = offer_of(shape, kCoarsePlaces, kCoarseLengths);
+            if (own.score > pair.score) pair = own;
+        }
+        if (pair.places > 0)
+            pair = finer(finer(finer(pair, kCoarsePlaces), kFinePlaces), kFinestPlaces, true);
+        best.score -= price(singles, best);
+        pair.score -= price(pairs, pair);
+        if (pair.score > best.score) best = pair;
         const double gain = best.score - base;
-        if (!(gain > kClearly + std::log(static_cast<double>(shapes.size())))) return false;
-        parts_.push_back({TableBasis(subject_, shapes[best.candidate], laid_), best.length, best.size});
+        if (!(gain > kClearly)) return false;
+        parts_.push_back({TableBasis(subject_, best.shape, laid_, best.places), best.kernel, best.size});
         ErrorsLaw law = laws[best.setting];
         for (int round = 0; round < 2; ++round) {
             (void)fit_together(subject_, chosen_, law, error_, parts_);
@@ -387,10 +497,10 @@ std::vector<double> Learnt::in_rows(const Subject& subject) const {
         double own = 0.0;
         for (const LearntPart& part : parts) {
             if (part.basis.shape().by_run) continue;
-            const RowWeights row = part.basis.row(subject, i);
             const std::size_t table = part.basis.table_of(subject, i) * part.basis.values();
-            for (std::size_t c = 0; c < row.at.size(); ++c)
-                own += row.weight[c] * part.value[static_cast<Index>(table + row.at[c])];
+            part.basis.of_row(subject, i, [&](std::size_t value, double weight) {
+                own += weight * part.value[static_cast<Index>(table + value)];
+            });
         }
         sum = subject.sums ? (subject.starts[i] != 0 ? 0.0 : sum) + own : own;
         added[i] = sum;

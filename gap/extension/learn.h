@@ -17,7 +17,7 @@ namespace puckloop::gap {
 /// One table with what it was found to hold.
 struct LearntPart {
     TableBasis basis;
-    double length = 1.0;            ///< of the kernel
+    Kernel kernel{};
     double size = 1.0;              ///< prior sd of a value over sd of the errors
     double spread = 0.0;            ///< prior sd of a value, quantity's unit
     Eigen::VectorXd value{}, sd{};  ///< one table after another
@@ -29,6 +29,8 @@ struct Learnt {
     ErrorsLaw law_without;  ///< without it
     double evidence = 0.0;  ///< nats by which the rows used are likelier with it, what it is allowed paid
     double freedom = 0.0;   ///< numbers that the rows decide, of all in the tables but those of runs
+    /// How well all tables' values are known, one part after another, runs' left out.
+    Eigen::MatrixXd covariance{};
 
     /// What the term adds to each row's prediction: of sums, all that rows since the chain's beginning
     /// gained. A run that was not used has no offset of its own.

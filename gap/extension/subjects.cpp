@@ -3,17 +3,16 @@
 #include "gap/kinds/columns.h"
 #include "gap/kinds/description.h"
 #include "physics/description/extension.h"
-#include "physics/description/robot_constants.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr double kStands = 1e-6;         // m of both wheels in a row: less is standing
 constexpr double kMostDirections = 0.9;  // of a turn: angles that go further round are periodic
 
 /// A column of the experiment as the world calls it.
@@ -116,27 +115,33 @@ std::vector<WorldCovariate> known_covariates(const Experiment& experiment, const
     return all;
 }
 
-/// What the wheels say of each row of a drive.
-void add_wheels(const Experiment& experiment, const WheelRows& wheels, const Observable& observable,
-                Subject& subject) {
-    const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
+/// A drive's moments, with what the wheels say of each.
+void add_wheels(const std::vector<WheelMoment>& moments, std::size_t rows, Subject& subject) {
     WorldCovariate speed{"speed", "m/s", {}, true}, turn_rate{"turn_rate", "rad/s", {}, true},
         travelled{"travelled", "m", {}};
-    double way = 0.0;
-    for (std::size_t i = 0; i < observable.y.size(); ++i) {
-        const bool begins = observable.starts[i] != 0;
-        if (begins) way = 0.0;
-        const double seconds = begins ? 0.0 : wheels.time[i] - wheels.time[i - 1];
-        const double left = begins ? 0.0 : wheels.left[i], right = begins ? 0.0 : wheels.right[i];
-        const bool moved = seconds > 0 && (std::abs(left) > kStands || std::abs(right) > kStands);
-        way += std::abs(left + right) / 2;
-        subject.span[i] = moved ? seconds : 0.0;
-        speed.value.push_back(moved ? (left + right) / 2 / seconds : 0.0);
-        turn_rate.value.push_back(moved ? (right - left) / axle / seconds : 0.0);
-        travelled.value.push_back(way);
+    subject.moments.assign(rows + 1, 0);
+    for (const WheelMoment& moment : moments) {
+        ++subject.moments[moment.row + 1];
+        subject.weight.push_back(moment.seconds);
+        speed.value.push_back(moment.speed);
+        turn_rate.value.push_back(moment.turn_rate);
+        travelled.value.push_back(moment.travelled);
     }
+    std::partial_sum(subject.moments.begin(), subject.moments.end(), subject.moments.begin());
     for (WorldCovariate* one : {&speed, &turn_rate, &travelled})
         subject.covariates.push_back(std::move(*one));
+}
+
+/// From rows to moments: between two rows a straight line, of an angle the shorter way round.
+void look_between_rows(const std::vector<WheelMoment>& moments, WorldCovariate& one) {
+    std::vector<double> between;
+    for (const WheelMoment& moment : moments) {
+        const double before = one.value[moment.row - 1], change = one.value[moment.row] - before;
+        between.push_back(before +
+                          moment.share *
+                              (one.unit == "rad" ? std::remainder(change, 2 * std::numbers::pi) : change));
+    }
+    one.value = std::move(between);
 }
 
 void wrap(WorldCovariate& one) {
@@ -153,7 +158,8 @@ void wrap(WorldCovariate& one) {
 
 /// A covariate that is not known in every row is none: the term would act in some rows only.
 bool usable(const WorldCovariate& one) {
-    return std::ranges::all_of(one.value, [](double value) { return std::isfinite(value); }) &&
+    return !one.value.empty() &&
+           std::ranges::all_of(one.value, [](double value) { return std::isfinite(value); }) &&
            std::ranges::any_of(one.value, [&](double value) { return value != one.value.front(); });
 }
 
@@ -163,7 +169,8 @@ std::vector<Subject> subjects_of(const Experiment& experiment, const Model& mode
                                  const std::vector<double>& values, const Prediction& prediction) {
     std::vector<Subject> subjects;
     const auto& observables = model.observables();
-    const WheelRows wheels = experiment.kind == Kind::Motion ? model.wheels(values) : WheelRows{};
+    const bool drives = experiment.kind == Kind::Motion;
+    const auto wheels = drives ? model.wheel_moments(values) : std::vector<WheelMoment>{};
     for (std::size_t o = 0; o < observables.size(); ++o) {
         const Observable& observable = observables[o];
         if (observable.noise == NoiseKind::Event || observable.fixed_sd > 0 || observable.y.empty()) continue;
@@ -177,13 +184,22 @@ std::vector<Subject> subjects_of(const Experiment& experiment, const Model& mode
         subject.sums = adds_up(observable);
         subject.run = observable.run;
         subject.starts = observable.starts;
-        subject.span.assign(observable.y.size(), 1.0);
         for (std::size_t i = 0; i < observable.y.size(); ++i)
             subject.error.push_back(observable.instrument.at_end(observable.y[i])
                                         ? NAN
                                         : observable.y[i] - shown(prediction[o], i));
-        if (experiment.kind == Kind::Motion) add_wheels(experiment, wheels, observable, subject);
+        if (drives) {
+            add_wheels(wheels, observable.y.size(), subject);
+        } else {
+            subject.moments.resize(observable.y.size() + 1);
+            std::iota(subject.moments.begin(), subject.moments.end(), 0U);
+            subject.weight.assign(observable.y.size(), 1.0);
+        }
         for (WorldCovariate& covariate : known_covariates(experiment, observable)) {
+            if (experiment.kind == Kind::Proximity && covariate.name == "angle")  // a run's has no side
+                std::ranges::transform(covariate.value, covariate.value.begin(),
+                                       [](double angle) { return std::abs(angle); });
+            if (drives) look_between_rows(wheels, covariate);
             wrap(covariate);
             if (usable(covariate)) subject.covariates.push_back(std::move(covariate));
         }

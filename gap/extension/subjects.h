@@ -10,7 +10,7 @@
 
 namespace puckloop::gap {
 
-/// What the world knows, a row each.
+/// What the world knows, a moment each.
 struct WorldCovariate {
     std::string name, unit;
     std::vector<double> value;
@@ -23,7 +23,10 @@ struct Subject {
     std::string quantity, quantity_unit;  ///< of the world; no name: it has no such place
     bool sums = false;                    ///< what a row gains goes on in all rows after it
     std::vector<double> error;            ///< measured - predicted; NaN: the instrument does not show it
-    std::vector<double> span;             ///< weight of what a row gains: s in which the wheels went, or 1
+    /// Where each row's moments begin, and where the last one's end: a reading has one, a row of a sum as
+    /// many as what it gains may change in it, or none.
+    std::vector<std::uint32_t> moments;
+    std::vector<double> weight;  ///< of a moment: s in which the wheels were driven, or 1
     std::vector<std::uint32_t> run;
     std::vector<char> starts;
     std::vector<int> sensor;  ///< 0 where there is one

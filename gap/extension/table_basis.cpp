@@ -8,75 +8,103 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kPlacesOfOne = 12, kPlacesOfTwo = 6;  // along an axis alone, and beside another
-constexpr double kLeastApart = 0.01;                        // of the range: places nearer are one
-constexpr double kUnsure = 1e-6;                            // added to each value's variance: numerics
+constexpr double kLeastApart = 0.002;  // of the range: places nearer are one
+constexpr double kUnsure = 1e-6;       // added to each value's variance: numerics
 
-/// Where a share of the rows lies below each; all different values where they are few.
-std::vector<double> places_in(std::vector<double> values, std::size_t count) {
+struct Axis {
+    std::vector<double> at, along;
+};
+
+/// All different values where they are few; else those nearest to equal ways.
+Axis places_in(std::vector<double> values, std::size_t most) {
     std::ranges::sort(values);
     std::vector<double> different = values;
     different.erase(std::unique(different.begin(), different.end()), different.end());
-    std::vector<double> wanted;
-    if (different.size() <= count)
-        wanted = different;
-    else
-        for (std::size_t k = 0; k < count; ++k)
-            wanted.push_back(values[k * (values.size() - 1) / (count - 1)]);
-    std::vector<double> places;
-    const double apart = wanted.empty() ? 0.0 : kLeastApart * (wanted.back() - wanted.front());
-    for (const double one : wanted)
-        if (places.empty() || one > places.back() + apart) places.push_back(one);
-    if (places.size() > 1) places.back() = wanted.back();
-    return places;
+    Axis axis;
+    if (different.size() < 2) return axis;
+    const double low = different.front(), range = different.back() - low;
+    const auto ways = [&](double value) {
+        const auto below = std::ranges::lower_bound(values, value) - values.begin();
+        return ((value - low) / range + static_cast<double>(below) / static_cast<double>(values.size())) / 2;
+    };
+    const auto place = [&](double value) {
+        if (!axis.at.empty() && value <= axis.at.back() + kLeastApart * range) return;
+        axis.at.push_back(value);
+        axis.along.push_back(ways(value));
+    };
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < most; ++k) {
+        const double wanted = ways(different.back()) * static_cast<double>(k) / static_cast<double>(most - 1);
+        if (different.size() > most)
+            while (next + 1 < different.size() && ways(different[next]) < wanted)
+                ++next;
+        else
+            next = k;
+        if (next < different.size()) place(different[next]);
+    }
+    if (axis.at.back() != different.back()) {  // the last places are nearer than they may be
+        axis.at.back() = different.back();
+        axis.along.back() = ways(different.back());
+    }
+    for (double& one : axis.along)
+        one /= axis.along.back();
+    return axis;
 }
 
-std::vector<double> places_round(std::size_t count) {
-    std::vector<double> places;
-    for (std::size_t k = 0; k <= count; ++k)
-        places.push_back(std::numbers::pi * (2 * static_cast<double>(k) / static_cast<double>(count) - 1));
-    return places;
+Axis places_round(std::size_t count) {
+    Axis axis;
+    for (std::size_t k = 0; k <= count; ++k) {
+        axis.along.push_back(static_cast<double>(k) / static_cast<double>(count));
+        axis.at.push_back(std::numbers::pi * (2 * axis.along.back() - 1));
+    }
+    return axis;
 }
 
-double kernel(double distance, double length) {
+double correlation(double distance, double length) {
     const double scaled = std::sqrt(3.0) * distance / length;
     return (1 + scaled) * std::exp(-scaled);
 }
 
-Eigen::MatrixXd covariance(std::size_t places, bool periodic, double length) {
-    const auto n = static_cast<Eigen::Index>(places);
+Eigen::MatrixXd covariance(const std::vector<double>& along, bool periodic, double length) {
+    const auto n = static_cast<Eigen::Index>(along.size());
     Eigen::MatrixXd all(n, n);
     for (Eigen::Index a = 0; a < n; ++a)
         for (Eigen::Index b = 0; b < n; ++b) {
-            const double share =
-                static_cast<double>(a - b) / static_cast<double>(std::max<Eigen::Index>(n - 1, 1));
+            const double apart =
+                std::abs(along[static_cast<std::size_t>(a)] - along[static_cast<std::size_t>(b)]);
             // Once round an axis of 1: the chord, so that both ends are one.
             const double distance =
-                periodic ? std::abs(std::sin(std::numbers::pi * share)) / std::numbers::pi : std::abs(share);
-            all(a, b) = kernel(distance, length);
+                periodic ? std::abs(std::sin(std::numbers::pi * apart)) / std::numbers::pi : apart;
+            all(a, b) = correlation(distance, length);
         }
     return all;
 }
 
 }  // namespace
 
-TableBasis::TableBasis(const Subject& subject, const TableShape& shape, const std::vector<char>& used)
+TableBasis::TableBasis(const Subject& subject, const TableShape& shape, const std::vector<char>& used,
+                       std::size_t most)
     : shape_(shape) {
-    lay_places(subject, used);
+    lay_places(subject, used, most);
     if (shape.by_sensor) tables_ = static_cast<std::size_t>(subject.sensors);
     if (shape.by_run && !subject.run.empty()) tables_ = *std::ranges::max_element(subject.run) + 1;
 }
 
-void TableBasis::lay_places(const Subject& subject, const std::vector<char>& used) {
+void TableBasis::lay_places(const Subject& subject, const std::vector<char>& used, std::size_t most) {
     for (const std::size_t c : shape_.over) {
         const WorldCovariate& covariate = subject.covariates[c];
-        const std::size_t most = shape_.over.size() == 1 ? kPlacesOfOne : kPlacesOfTwo;
         std::vector<double> values;
-        for (std::size_t i = 0; i < covariate.value.size(); ++i)
-            if (used[i] != 0 && subject.span[i] > 0) values.push_back(covariate.value[i]);
+        for (std::size_t i = 0; i < used.size(); ++i)
+            for (std::size_t m = subject.moments[i]; used[i] != 0 && m < subject.moments[i + 1]; ++m)
+                values.push_back(covariate.value[m]);
+        // Where other rows go nothing is known, and the table has to say so.
+        const auto [low, high] = std::ranges::minmax(covariate.value);
+        values.insert(values.end(), {low, high});
         periodic_.push_back(covariate.periodic ? 1 : 0);
-        places_.push_back(covariate.periodic ? places_round(most) : places_in(std::move(values), most));
-        values_ *= places_.back().size() < 2 ? 0 : places_.back().size();
+        Axis axis = covariate.periodic ? places_round(most) : places_in(std::move(values), most);
+        values_ *= axis.at.size();
+        places_.push_back(std::move(axis.at));
+        along_.push_back(std::move(axis.along));
     }
 }
 
@@ -85,33 +113,34 @@ std::size_t TableBasis::table_of(const Subject& subject, std::size_t i) const {
     return shape_.by_sensor ? static_cast<std::size_t>(subject.sensor[i]) : 0;
 }
 
-RowWeights TableBasis::row(const Subject& subject, std::size_t i) const {
-    RowWeights row;
-    double factor = subject.span[i];
-    if (shape_.times >= 0) factor *= subject.covariates[static_cast<std::size_t>(shape_.times)].value[i];
-    row.weight[0] = factor;
+MomentWeights TableBasis::of_moment(const Subject& subject, std::size_t m) const {
+    MomentWeights own;
+    own.weight[0] = subject.weight[m];
+    if (shape_.times >= 0)
+        own.weight[0] *= subject.covariates[static_cast<std::size_t>(shape_.times)].value[m];
     std::size_t corners = 1;
     for (std::size_t k = 0; k < places_.size(); ++k) {
         const auto& at = places_[k];
-        const double value = std::clamp(subject.covariates[shape_.over[k]].value[i], at.front(), at.back());
+        const double value = std::clamp(subject.covariates[shape_.over[k]].value[m], at.front(), at.back());
         const auto above = std::clamp<std::size_t>(
             static_cast<std::size_t>(std::ranges::upper_bound(at, value) - at.begin()), 1, at.size() - 1);
         const double share = (value - at[above - 1]) / (at[above] - at[above - 1]);
         for (std::size_t c = 0; c < corners; ++c) {
-            row.at[c + corners] = row.at[c] * at.size() + above;
-            row.weight[c + corners] = row.weight[c] * share;
-            row.at[c] = row.at[c] * at.size() + above - 1;
-            row.weight[c] *= 1 - share;
+            own.at[c + corners] = own.at[c] * at.size() + above;
+            own.weight[c + corners] = own.weight[c] * share;
+            own.at[c] = own.at[c] * at.size() + above - 1;
+            own.weight[c] *= 1 - share;
         }
         corners *= 2;
     }
-    return row;
+    return own;
 }
 
-Eigen::MatrixXd TableBasis::root(double length) const {
+Eigen::MatrixXd TableBasis::root(const Kernel& kernel) const {
     Eigen::MatrixXd all = Eigen::MatrixXd::Ones(1, 1);
     for (std::size_t k = 0; k < places_.size(); ++k) {
-        const Eigen::MatrixXd own = covariance(places_[k].size(), periodic_[k] != 0, length);
+        const Eigen::MatrixXd own =
+            covariance(along_[k], periodic_[k] != 0 && kernel.round, kernel.lengths[k]);
         Eigen::MatrixXd wider(all.rows() * own.rows(), all.cols() * own.cols());
         for (Eigen::Index a = 0; a < all.rows(); ++a)
             for (Eigen::Index b = 0; b < all.cols(); ++b)

@@ -1,12 +1,13 @@
 #pragma once
 // A table as numbers that may be learnt: places along one covariate or two, straight lines between them, and
-// a Gaussian process's prior over the values at the places (Matern 3/2 in how many rows lie between), as the
-// root of its covariance.
+// a Gaussian process's prior over the values at the places (Matern 3/2), as the root of its covariance. A way
+// along an axis counts half by the covariate's range and half by the share of the rows that lies on it.
 
 #include "gap/extension/subjects.h"
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -23,16 +24,24 @@ struct TableShape {
     bool operator==(const TableShape&) const = default;
 };
 
-/// The part of a row's term that each value of a table makes: at most four of them.
-struct RowWeights {
+/// The part of a moment's term that each value of a table makes: at most four of them.
+struct MomentWeights {
     std::array<std::size_t, 4> at{};
     std::array<double, 4> weight{};  ///< 0: none
 };
 
+/// How smooth a table is.
+struct Kernel {
+    std::array<double, 2> lengths{1.0, 1.0};  ///< along each axis, in shares of it
+    bool round = true;                        ///< both ends of an angle are one place
+};
+
 class TableBasis {
   public:
-    /// Places are laid by the rows in `used`.
-    TableBasis(const Subject& subject, const TableShape& shape, const std::vector<char>& used);
+    /// `most` places along each axis, from end to end of all rows and laid by those in `used`: half by where
+    /// they are, half by the range, so that neither a crowd nor a stray value takes them all.
+    TableBasis(const Subject& subject, const TableShape& shape, const std::vector<char>& used,
+               std::size_t most);
 
     const TableShape& shape() const { return shape_; }
     const std::vector<std::vector<double>>& places() const { return places_; }
@@ -40,19 +49,29 @@ class TableBasis {
     std::size_t tables() const { return tables_; }  ///< sensors, runs, or one
     bool empty() const { return values_ == 0; }
 
-    /// Of row i of a subject of the same covariates; the index of its table apart. A run that was not used
-    /// has no table: no weights.
-    RowWeights row(const Subject& subject, std::size_t i) const;
+    /// Calls `add(value, weight)` for all that make row i's term, of a subject of the same covariates; the
+    /// index of its table apart.
+    template <class Add>
+    void of_row(const Subject& subject, std::size_t i, const Add& add) const {
+        for (std::size_t m = subject.moments[i]; m < subject.moments[i + 1]; ++m) {
+            const MomentWeights own = of_moment(subject, m);
+            for (std::size_t c = 0; c < corners(); ++c)
+                add(own.at[c], own.weight[c]);
+        }
+    }
     std::size_t table_of(const Subject& subject, std::size_t i) const;
 
-    /// values = root * z, z independent of unit size. `length`: of the kernel, in shares of an axis.
-    Eigen::MatrixXd root(double length) const;
+    /// values = root * z, z independent of unit size.
+    Eigen::MatrixXd root(const Kernel& kernel) const;
+    bool goes_round() const { return std::ranges::find(periodic_, 1) != periodic_.end(); }
 
   private:
-    void lay_places(const Subject& subject, const std::vector<char>& used);
+    std::size_t corners() const { return std::size_t{1} << places_.size(); }
+    MomentWeights of_moment(const Subject& subject, std::size_t m) const;
+    void lay_places(const Subject& subject, const std::vector<char>& used, std::size_t most);
 
     TableShape shape_;
-    std::vector<std::vector<double>> places_;
+    std::vector<std::vector<double>> places_, along_;  // and how far along its axis each is, 0 to 1
     std::vector<char> periodic_;
     std::size_t values_ = 1, tables_ = 1;
 };

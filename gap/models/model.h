@@ -97,6 +97,16 @@ struct WheelRows {
     double quantum = 0.0;  ///< of a counter; 0: nothing was counted
 };
 
+/// A moment of a drive's row in which the wheels were driven.
+struct WheelMoment {
+    std::uint32_t row = 0;   ///< of the first observable
+    double share = 0.0;      ///< of the row that is over at its middle
+    double seconds = 0.0;    ///< in which the wheels were driven
+    double speed = 0.0;      ///< m/s ahead, as a run's terms know it
+    double turn_rate = 0.0;  ///< rad/s
+    double travelled = 0.0;  ///< m that the wheels have rolled in the run
+};
+
 class Model {
   public:
     virtual ~Model() = default;
@@ -122,6 +132,9 @@ class Model {
 
     /// Of the rows of the first observable, where it is a drive; else nothing.
     virtual WheelRows wheels(const std::vector<double>&) const { return {}; }
+
+    /// The same rows, each in moments, in order; of nothing but drives.
+    virtual std::vector<WheelMoment> wheel_moments(const std::vector<double>&) const { return {}; }
 
     /// Parameters of the simulator that the model took from the data without fitting them, where they are not
     /// neutral.

@@ -12,6 +12,7 @@
 #include "gap/models/model_of.h"
 #include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
+#include "gap/models/wheel_moments.h"
 #include "physics/description/parameters.h"
 
 #include <algorithm>
@@ -120,6 +121,18 @@ class MotionModel final : public ModelOf<MotionNumbers> {
             }
         }
         return rows;
+    }
+
+    std::vector<WheelMoment> wheel_moments(const std::vector<double>& v) const override {
+        const MotionNumbers now = numbers(v), as_stated = nominal();
+        const double late = now.delay + (counted_ ? 0.0 : now.latency);
+        std::vector<WheelMoment> moments;
+        std::uint32_t first = 0;
+        for (const Path& path : paths_) {
+            add_wheel_moments(path, late, as_stated.metre(), as_stated.robot, first, moments);
+            first += static_cast<std::uint32_t>(path.time.size());
+        }
+        return moments;
     }
 
     /// A dead band begins between the fastest speed that moved nothing and the next one.

@@ -10,6 +10,9 @@
 
 namespace puckloop::physics {
 
+/// s over which Known::Speed and TurnRate are means: what a log at the control period calls speed.
+inline constexpr double kSpeedWindow = 0.1;
+
 /// What is known at a moment, in the order of Known; what the quantity does not know is not read.
 using Moment = std::array<double, kKnown>;
 

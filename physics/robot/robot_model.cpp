@@ -9,7 +9,6 @@ namespace puckloop::physics {
 namespace {
 constexpr double kGroundFullScale = 1023;
 constexpr double kAccelerationWindow = 0.1;  // s: what a log at the control period calls acceleration
-constexpr double kSpeedWindow = 0.1;         // s: what such a log calls speed
 constexpr double kConverter = 4095;          // counts, of the main board
 
 double forward_speed(const RobotState& state) {

@@ -94,9 +94,12 @@ bool WheelDrive::running(double seconds) const {
     return seconds - last_step_ <= parameters_.smoothing_limit;
 }
 
+double WheelDrive::driven_for(double interval, const BodyParameters& parameters) {
+    return std::max(parameters.smoothing_limit, interval <= kSlowest ? kOverdue * interval : 0.0);
+}
+
 bool WheelDrive::driven(double seconds) const {
-    const double expected = interval_ <= kSlowest ? kOverdue * interval_ : 0.0;
-    return seconds - last_step_ <= std::max(parameters_.smoothing_limit, expected);
+    return seconds - last_step_ <= driven_for(interval_, parameters_);
 }
 
 }  // namespace puckloop::physics

@@ -34,6 +34,9 @@ class WheelDrive {
     bool running(double seconds) const;
     /// Do steps still come at `seconds`? A single step counts until the next one is overdue.
     bool driven(double seconds) const;
+    /// s after a step for which the wheel counts as driven, where the one before it came `interval` s
+    /// earlier.
+    static double driven_for(double interval, const BodyParameters& parameters);
     /// Rate of the steps, steps/s without sign; falls with the time since the last one, to 0 after 0.1 s.
     double speed(double seconds) const;
     double steps() const { return steps_; }

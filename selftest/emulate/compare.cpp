@@ -117,18 +117,6 @@ void compare_timing(const Run& run, const React& react, const std::vector<Row>& 
     add_arrivals(differences, comparisons[0]);
 }
 
-/// What a standing robot's sensor read about the time `t` since power came, or nearest to it.
-std::vector<double> standing(const std::vector<Row>& emulated, double t,
-                             const std::function<double(const Row&)>& value) {
-    const double about = std::clamp(std::isnan(t) ? 0.0 : t, kSettled, emulated.back().powered);
-    std::vector<double> values;
-    for (const Row& row : emulated)
-        if (row.t >= kSettled && std::abs(row.powered - about) <= kAround && row.ok &&
-            !std::isnan(value(row)))
-            values.push_back(value(row));
-    return values;
-}
-
 void compare_placement(const Experiment& experiment, const React& react, const Performed& performed,
                        const Performed& plain, std::vector<Comparison>& comparisons) {
     const bool floor = experiment.kind == Kind::Ground;
@@ -144,6 +132,17 @@ void compare_placement(const Experiment& experiment, const React& react, const P
 }
 
 }  // namespace
+
+std::vector<double> standing(const std::vector<Row>& emulated, double t,
+                             const std::function<double(const Row&)>& value) {
+    const double about = std::clamp(std::isnan(t) ? 0.0 : t, kSettled, emulated.back().powered);
+    std::vector<double> values;
+    for (const Row& row : emulated)
+        if (row.t >= kSettled && std::abs(row.powered - about) <= kAround && row.ok &&
+            !std::isnan(value(row)))
+            values.push_back(value(row));
+    return values;
+}
 
 double mean_of(const std::vector<double>& values) {
     double sum = 0.0;

@@ -16,6 +16,7 @@
 #include <exception>
 #include <filesystem>
 #include <numbers>
+#include <string_view>
 
 namespace puckloop::gap::emulate {
 
@@ -40,10 +41,11 @@ struct TermSite {
 
 const std::vector<TermSite>& places() {
     static const Tried kSpeed{"speed", -0.13, 0.13}, kTurn{"turn_rate", -3, 3},
-        kHeading{"heading", -std::numbers::pi, std::numbers::pi}, kTime{"time", 0, 40},
-        kDistance{"distance", 0, 0.11}, kAngle{"angle", -1.1, 1.1}, kGrey{"grey", 0, 1},
+        kHeading{"heading", -std::numbers::pi, std::numbers::pi}, kTime{"time", 0, 16},
+        kDistance{"distance", 0, 0.11}, kAngle{"angle", 0, 1.1}, kGrey{"grey", 0, 1},
         kPitch{"pitch", -0.4, 0.4}, kRoll{"roll", -0.4, 0.4};
-    // Sizes: a few to some ten times the noise of each.
+    // Sizes: a few to some ten times the noise of each; of levels, whose windows scatter by 12 %, one to four
+    // times.
     static const std::vector<TermSite> all{
         {"motion", "motion.forward", 0.002, 0.01, {kSpeed, kTurn, kHeading, kTime}},
         {"motion", "motion.turn", 0.03, 0.15, {kSpeed, kTurn, kHeading, kTime}},
@@ -51,7 +53,7 @@ const std::vector<TermSite>& places() {
         {"ground", "ground.reading", 10, 50, {kGrey, kSpeed, kTime}},
         {"accelerometer", "accelerometer.x", 20, 80, {kPitch, kRoll, kTime}},
         {"accelerometer", "accelerometer.y", 20, 80, {kPitch, kRoll, kTime}},
-        {"microphone", "microphone.level", 4, 20, {kTime}},
+        {"microphone", "microphone.level", 50, 200, {kTime}},
     };
     return all;
 }
@@ -67,14 +69,18 @@ bool knows(const char* quantity, const char* covariate) {
     return std::find(all.begin(), all.end(), *known) != all.end();
 }
 
-/// A form over 0 to 1, about nothing on average.
+/// A form over 0 to 1, about nothing on average. `round`: both ends are one place, so that a wave has whole
+/// waves, and what steps up steps down again; a robot would be held where they are not.
 struct Form {
     int shape;
     double at, waves;
+    bool round = false;
     double operator()(double u) const {
-        if (shape == 0) return std::sin(2 * std::numbers::pi * (waves * u + at));
+        constexpr double kRise = 0.04;
+        const double turn = 2 * std::numbers::pi;
+        if (shape == 0) return std::sin(turn * ((round ? std::round(waves) : waves) * u + at));
         if (shape == 1) return std::exp(-std::pow((u - at) / 0.12, 2)) - 0.2;
-        return std::tanh((u - at) / 0.04);  // a step
+        return std::tanh((round ? std::sin(turn * (u - at)) / turn : u - at) / kRise);  // a step
     }
     const char* words() const { return shape == 0 ? "a wave" : shape == 1 ? "a bump" : "a step"; }
 };
@@ -108,7 +114,9 @@ HiddenTerm drawn_term(std::size_t number, std::uint64_t seed) {
     const bool two = tried.size() > 1 && random.uniform() < kTwo;
     const std::size_t second =
         (first + 1 + random.below(std::max<std::size_t>(tried.size() - 1, 1))) % tried.size();
-    const Form form = drawn_form(random), other = drawn_form(random);
+    Form form = drawn_form(random), other = drawn_form(random);
+    form.round = std::string_view(tried[first].name) == "heading";
+    other.round = std::string_view(tried[second].name) == "heading";
     const double size = place.least * std::pow(place.most / place.least, random.uniform());
     const std::size_t count = two ? kPlacesOfTwo : kPlaces;
     hidden.term.adds_to = place.quantity;
@@ -164,7 +172,10 @@ TermResult try_term(std::size_t number, const RecordOptions& given) {
         result.decision = std::string(decision_name(verdict.decision));
         for (const Cause& cause : verdict.causes)
             result.named.push_back(cause.name);
-        result.again = performed_again(measured, verdict, options);
+        const auto& over = result.hidden.term.over;
+        result.again =
+            performed_again(measured, verdict, options,
+                            std::ranges::find(over, "time", &physics::ExtensionAxis::over) != over.end());
     } catch (const std::exception& error) {
         result.decision = "error";
         result.error = error.what();

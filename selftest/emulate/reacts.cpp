@@ -269,9 +269,9 @@ std::vector<React> reacts_of(const Experiment& experiment, double longest, std::
     case Kind::Proximity:
         return proximity(experiment, longest, why);
     case Kind::Microphone:
-        return microphone_reacts(experiment, why);
+        return microphone_reacts(experiment, longest, why);
     case Kind::Accelerometer:
-        return accelerometer_reacts(experiment, why);
+        return accelerometer_reacts(experiment, longest, why);
     default:
         why = fmt::format("experiments of kind {} are not performed again", kind_name(experiment.kind));
         return {};

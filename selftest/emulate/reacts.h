@@ -6,6 +6,7 @@
 #include "selftest/emulate/record_serial.h"
 #include "selftest/emulate/stage.h"
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ struct React {
     std::vector<std::size_t> rows{};   ///< of the run; of placements: run and row in turn
     std::size_t sensor = 0;            ///< proximity, microphone: which sensor it is about
     bool line = false;                 ///< timing: about the bytes on the main board's line
+    bool timed = false;                ///< microphone, accelerometer: a row is looked at about its own time
     double x = 0, y = 0, heading = 0;  ///< motion: measured pose that the act's start stands for
 };
 
@@ -29,6 +31,10 @@ std::vector<React> reacts_of(const Experiment& experiment, double longest, std::
 
 /// `most` of them at even spaces, all if there are no more.
 std::vector<React> spread_of(const std::vector<React>& all, std::size_t most);
+
+/// What a standing robot's sensor read about the time `t` since power came, or nearest to it.
+std::vector<double> standing(const std::vector<Row>& emulated, double t,
+                             const std::function<double(const Row&)>& value);
 
 /// What one performance gave.
 struct Performed {

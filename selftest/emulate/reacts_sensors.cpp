@@ -16,6 +16,7 @@ namespace puckloop::gap::emulate {
 namespace {
 
 constexpr double kSensorStanding = 3.0;        // s: the mean of 25 windows is good to 2.4 %
+constexpr double kSensorLook = 0.5;            // s after a row's time that are looked at
 constexpr double kSettledRows = 0.45;          // s after which rows count
 constexpr std::size_t kSensorPlacements = 24;  // of many every so-many-th, in order
 constexpr double kSensorFine = 1e-4;           // m and rad: closer placements are one
@@ -33,15 +34,21 @@ std::vector<React> some_of(Places& places) {
     return spread_of(all, kSensorPlacements);
 }
 
-void add_row(Places& places, const Place& place, const React& react, std::size_t run, std::size_t row) {
+void add_row(Places& places, const Place& place, const React& react, const Experiment& experiment,
+             std::size_t run, std::size_t row, double longest) {
     React& known = places.try_emplace(place, react).first->second;
+    const double t = value_of(experiment.runs[run], "t_s", row, NAN);
+    known.timed = longest > kSensorStanding && !std::isnan(t);
+    double& until = known.act.commands.back().seconds;
+    if (known.timed) until = std::max(until, std::min(t + kSensorLook, longest));
     known.rows.push_back(run);
     known.rows.push_back(row);
 }
 
-/// What a standing robot's rows say once they have settled.
-std::vector<double> settled(const std::vector<Row>& emulated,
-                            const std::function<double(const Row&)>& value) {
+/// What a standing robot's rows say once they have settled; about a row's time where that matters.
+std::vector<double> settled(const std::vector<Row>& emulated, const React& react, const Run& run,
+                            std::size_t measured, const std::function<double(const Row&)>& value) {
+    if (react.timed) return standing(emulated, value_of(run, "t_s", measured, NAN), value);
     std::vector<double> values;
     for (const Row& row : emulated)
         if (row.t >= kSettledRows && row.ok && !std::isnan(value(row))) values.push_back(value(row));
@@ -50,7 +57,7 @@ std::vector<double> settled(const std::vector<Row>& emulated,
 
 }  // namespace
 
-std::vector<React> microphone_reacts(const Experiment& experiment, std::string& why) {
+std::vector<React> microphone_reacts(const Experiment& experiment, double longest, std::string& why) {
     const physics::MicrophoneParameters drawn = physics::Parameters().microphone;
     Places places;
     for (std::size_t r = 0; r < experiment.runs.size(); ++r)
@@ -72,14 +79,14 @@ std::vector<React> microphone_reacts(const Experiment& experiment, std::string& 
             add_row(places,
                     {static_cast<long>(mic), std::lround(distance / kSensorFine),
                      std::lround(angle / kSensorFine), std::lround(level)},
-                    react, r, i);
+                    react, experiment, r, i, longest);
         }
     auto chosen = some_of(places);
     if (chosen.empty()) why = "no row of a standing robot with a loudspeaker's distance";
     return chosen;
 }
 
-std::vector<React> accelerometer_reacts(const Experiment& experiment, std::string& why) {
+std::vector<React> accelerometer_reacts(const Experiment& experiment, double longest, std::string& why) {
     int index = -1;
     const double steepest = physics::find_parameter("world.slope_x", index)->max;
     Places places;
@@ -99,7 +106,7 @@ std::vector<React> accelerometer_reacts(const Experiment& experiment, std::strin
             react.act.slope_y = across;
             react.act.commands = {{0, 0, 0}, {kSensorStanding, 0, 0}};
             add_row(places, {std::lround(pitch / kSensorFine), std::lround(roll / kSensorFine), 0, 0}, react,
-                    r, i);
+                    experiment, r, i, longest);
         }
     auto chosen = some_of(places);
     if (chosen.empty()) why = "no row of a robot that stands, tilted by 0.2 rad or less";
@@ -109,10 +116,12 @@ std::vector<React> accelerometer_reacts(const Experiment& experiment, std::strin
 void compare_microphone(const Experiment& experiment, const React& react, const Performed& performed,
                         const Performed& plain, std::vector<Comparison>& comparisons) {
     const auto value = [&](const Row& r) { return r.mic[react.sensor]; };
-    const auto is = settled(performed.rows, value), expected = settled(plain.rows, value);
-    for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2)
-        compare_reading(experiment.runs[react.rows[k]].column("level")[react.rows[k + 1]], is, expected,
-                        comparisons[0], comparisons[1]);
+    for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2) {
+        const Run& run = experiment.runs[react.rows[k]];
+        const std::size_t row = react.rows[k + 1];
+        compare_reading(run.column("level")[row], settled(performed.rows, react, run, row, value),
+                        settled(plain.rows, react, run, row, value), comparisons[0], comparisons[1]);
+    }
 }
 
 void compare_accelerometer(const Experiment& experiment, const React& react, const Performed& performed,
@@ -120,10 +129,13 @@ void compare_accelerometer(const Experiment& experiment, const React& react, con
     const char* const axes[] = {"ax", "ay", "az"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto value = [&](const Row& r) { return r.acc[axis]; };
-        const auto is = settled(performed.rows, value), expected = settled(plain.rows, value);
-        for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2)
-            compare_reading(experiment.runs[react.rows[k]].column(axes[axis])[react.rows[k + 1]], is,
-                            expected, comparisons[axis], comparisons[3 + axis]);
+        for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2) {
+            const Run& run = experiment.runs[react.rows[k]];
+            const std::size_t row = react.rows[k + 1];
+            compare_reading(run.column(axes[axis])[row], settled(performed.rows, react, run, row, value),
+                            settled(plain.rows, react, run, row, value), comparisons[axis],
+                            comparisons[3 + axis]);
+        }
     }
 }
 

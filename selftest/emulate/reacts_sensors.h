@@ -7,10 +7,11 @@
 
 namespace puckloop::gap::emulate {
 
-/// Up to 24 placements of a loudspeaker before a microphone.
-std::vector<React> microphone_reacts(const Experiment& experiment, std::string& why);
+/// Up to 24 placements of a loudspeaker before a microphone. `longest`: s that the robot stands at most to be
+/// looked at when the row was measured; less than it stands anyhow: all of it counts.
+std::vector<React> microphone_reacts(const Experiment& experiment, double longest, std::string& why);
 /// Up to 24 tilts of the table (0.2 rad and less); rows with accelerations are not made again.
-std::vector<React> accelerometer_reacts(const Experiment& experiment, std::string& why);
+std::vector<React> accelerometer_reacts(const Experiment& experiment, double longest, std::string& why);
 
 /// Rows against the mean of the emulated ones, and their distribution: of levels, or of three axes.
 void compare_microphone(const Experiment& experiment, const React& react, const Performed& performed,

@@ -46,7 +46,7 @@ WrittenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
         const auto blurred = [&](double value, double sd, double quantum) {
             return std::round((value + sd * noise.normal()) / quantum) * quantum;
         };
-        run.column("t_s", "s").values.push_back(r.t);
+        run.column("t_s", "s").values.push_back(r.powered);
         run.column("x_m", "m").values.push_back(blurred(r.x, kPlaceNoise, kPlaceQuantum));
         run.column("y_m", "m").values.push_back(blurred(r.y, kPlaceNoise, kPlaceQuantum));
         run.column("theta_rad", "rad").values.push_back(blurred(r.theta, kAngleNoise, kAngleQuantum));

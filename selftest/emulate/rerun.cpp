@@ -28,9 +28,10 @@ Robot nominal_robot(const Experiment& experiment, const RerunOptions& options) {
     return robot;
 }
 
-/// What warms up is looked at as late as it was measured; else a moment tells all.
-double longest_stand(const Verdict& verdict) {
+/// What warms up is looked at as late as it was measured; else any moment will do.
+double longest_stand(const Verdict& verdict, bool by_time) {
     constexpr double kLongest = 20.0;  // s
+    if (by_time) return kLongest;
     for (const Cause& cause : verdict.causes)
         for (const FittedParameter& parameter : cause.parameters)
             if (parameter.name.find("warmup") != std::string::npos) return kLongest;
@@ -114,7 +115,7 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         result.left_out = left_out(experiment, verdict);
         return result;
     }
-    const auto all = reacts_of(experiment, longest_stand(verdict), result.not_done);
+    const auto all = reacts_of(experiment, longest_stand(verdict, options.by_time), result.not_done);
     if (!result.not_done.empty()) return result;
     const auto reacts = chosen(all, options.longest);
     const auto names = compared(experiment.kind);

@@ -22,6 +22,7 @@ struct RerunOptions {
     std::filesystem::path scratch;   ///< made, and removed
     std::uint64_t seed = 1;
     double longest = 0.0;  ///< s of simulated time for each of the two: runs from all over are chosen; 0: all
+    bool by_time = false;  ///< standing robots stand until a row was measured, whatever was learnt
     std::optional<Robot>
         truth;  ///< the robot that was recorded, for the floor: performed kTruePerformances times
     std::function<void(std::size_t, std::size_t)> done;  ///< runs done, of all

@@ -82,7 +82,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded) {
+Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded,
+                      bool by_time) {
     constexpr double kBrief = 20.0;  // s of simulated time for each of the three
     const auto file = recorded.scratch / "overlay.toml";
     std::ofstream(file) << overlay_toml(measured, verdict);
@@ -93,6 +94,7 @@ Rerun performed_again(const Experiment& measured, const Verdict& verdict, const 
     how.seed = recorded.seed + 1;
     how.longest = recorded.brief ? kBrief : 0.0;  // an effect may show in a few runs only
     how.truth = recorded.robot;
+    how.by_time = by_time;
     return rerun(measured, verdict, how);
 }
 

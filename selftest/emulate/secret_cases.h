@@ -28,7 +28,9 @@ SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOption
 
 /// Performs a measured experiment again with the overlay of its verdict, beside the simulator as it is and
 /// the true robot (`recorded.robot`), whose own differences are the floor.
-Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded);
+/// `by_time`: what was changed in it depends on the time.
+Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded,
+                      bool by_time = false);
 /// Were observables beyond the true robot's floor as the simulator is, and is none of them with the overlay?
 bool is_back(const Rerun& again);
 /// Was something performed, and none beyond the floor without the overlay and with it?

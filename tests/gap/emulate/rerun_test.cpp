@@ -4,6 +4,7 @@
 #include "gap/overlay/overlay.h"
 #include "gap/reading/read_experiment.h"
 #include "scenarios/reader/read_scenario.h"
+#include "selftest/emulate/reacts.h"
 #include "selftest/emulate/record.h"
 #include "selftest/emulate/rerun.h"
 #include "selftest/emulate/surroundings.h"
@@ -276,4 +277,38 @@ TEST_CASE("what cannot be performed again is said, not guessed") {
     CHECK(emulate::rerun(experiment, verdict, how).not_done.find("distance") != std::string::npos);
     experiment.kind = Kind::Motion;  // no word of its firmware
     CHECK(emulate::rerun(experiment, verdict, how).not_done.find("firmware") != std::string::npos);
+}
+
+TEST_CASE("where time matters a standing robot is looked at when its row was measured") {
+    Experiment experiment;
+    experiment.kind = Kind::Microphone;
+    Run run;
+    run.rows = 2;
+    run.columns = {{"t_s", {1.0, 12.0}},       {"mic", {0, 0}},       {"distance_m", {0.2, 0.2}},
+                   {"angle_rad", {0.0, 0.0}},  {"level", {5.0, 9.0}}, {"amplitude", {600, 600}},
+                   {"motor_speed", {0.0, 0.0}}};
+    experiment.runs.push_back(run);
+    emulate::Performed performed;
+    for (int k = 0; k < 200; ++k) {
+        emulate::Row row{};
+        row.t = row.powered = 0.1 * k;
+        row.ok = true;
+        row.mic[0] = row.t < 6 ? 5.0 : 9.0;
+        performed.rows.push_back(row);
+    }
+    for (const double longest : {0.0, 20.0}) {
+        std::string why;
+        const auto reacts = emulate::reacts_of(experiment, longest, why);
+        REQUIRE(reacts.size() == 1);
+        std::vector<emulate::Comparison> comparisons(2);
+        emulate::compare(experiment, reacts.front(), performed, performed, comparisons);
+        const double error = comparisons.front().off_by().value_or(NAN);
+        if (longest > 0) {
+            CHECK(reacts.front().act.commands.back().seconds >= 12.0);
+            CHECK(error == 0.0);
+        } else {
+            CHECK(reacts.front().act.commands.back().seconds < 5.0);
+            CHECK(error > 1.0);
+        }
+    }
 }
