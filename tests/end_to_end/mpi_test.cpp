@@ -14,17 +14,36 @@ namespace {
 
 const std::string kScenarios = PUCKLOOP_SOURCE "/scenarios/";
 
-/// mpirun with what it wants of a container's root and of more ranks than cores.
-Words job(int ranks, Words words) {
-    Words all{PUCKLOOP_MPIRUN,
-              "--allow-run-as-root",
-              "--oversubscribe",
-              "-n",
-              std::to_string(ranks),
-              PUCKLOOP_MPI_PROGRAM,
-              "run"};
+/// mpirun with what it wants of a container's root and of more ranks than cores, on this machine alone.
+Words mpirun(int ranks, const Words& words) {
+    Words all{PUCKLOOP_MPIRUN};
+    const Words options{"--allow-run-as-root",
+                        "--oversubscribe",
+                        "--bind-to",
+                        "none",
+                        "--mca",
+                        "oob_tcp_if_include",
+                        "lo",
+                        "--mca",
+                        "btl",
+                        "vader,self"};
+    all.insert(all.end(), options.begin(), options.end());
+    all.insert(all.end(), {"-n", std::to_string(ranks)});
     all.insert(all.end(), words.begin(), words.end());
     return all;
+}
+
+Words job(int ranks, const Words& words) {
+    Words all{PUCKLOOP_MPI_PROGRAM, "run"};
+    all.insert(all.end(), words.begin(), words.end());
+    return mpirun(ranks, all);
+}
+
+/// Some containers allow no MPI at all.
+bool works(const Workbench& bench) {
+    const Ended tried = Process(mpirun(2, {"true"}), bench.folder()).wait();
+    if (tried.status != 0) WARN("skipped: mpirun does not work here: " << tried.err);
+    return tried.status == 0;
 }
 
 Ended run_on(const Workbench& bench, int ranks, const std::string& out, Words words) {
