@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/conductor_state.h"
+#include "cosim/remote/node_hosts.h"
 
 #include <algorithm>
 #include <thread>
