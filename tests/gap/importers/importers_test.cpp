@@ -244,6 +244,7 @@ TEST_CASE("all published sets are imported and read back") {
     const Folder f;
     std::size_t experiments = 0;
     for (const importers::Importer& importer : importers::importers()) {
+        if (std::string(importer.name) == "puckloop_density") continue;  // a table of `puckloop bench`
         const auto made = importers::import_set(fs::path(measured) / importer.name, "", f.out);
         CHECK_FALSE(made.empty());
         for (const auto& e : made) {
