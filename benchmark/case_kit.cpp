@@ -37,10 +37,6 @@ Kit::~Kit() {
     std::filesystem::remove_all(folder_, ignored);
 }
 
-std::filesystem::path Kit::own_program() {
-    return main_program();
-}
-
 std::filesystem::path Kit::shipped(const std::string& scenario) {
     return shipped_file("scenarios/" + scenario);
 }
@@ -132,7 +128,7 @@ void Kit::time_boards() {
 RunTiming Kit::own_run(const RunSpec& given, const std::function<void(pid_t)>& watch) const {
     RunSpec spec = given;
     if (options_.interpret) spec.options.emplace_back("--no-translate");
-    return time_run(own_program(), spec, folder_ / "own", watch);
+    return time_run(main_program(), spec, folder_ / "own", watch);
 }
 
 std::optional<RunTiming> Kit::peer_run(const RunSpec& spec, const RunTiming& own, Figure& figure) const {

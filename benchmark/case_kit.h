@@ -54,7 +54,6 @@ class Kit {
         std::function<double()> once;
     };
     void time_speeds(const std::string& bench_case, const std::vector<Speed>& speeds);
-    static std::filesystem::path own_program();
     RunTiming own_run(const RunSpec& spec, const std::function<void(pid_t)>& watch = {}) const;
     /// Nothing without a peer, and when it cannot run this, which becomes `figure`'s note; it is not tried
     /// again.

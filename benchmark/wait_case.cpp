@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "base/shipped_files.h"
 #include "benchmark/case_kit.h"
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ void Kit::time_waiting() {
                 rest.push_back(waits_s / std::max(run.wall_s - boot.wall_s, kLeastShare * run.wall_s));
                 return run.work;
             };
-            const nlohmann::json own = time(own_program(), options_.interpret, whole.values, waits.values);
+            const nlohmann::json own = time(main_program(), options_.interpret, whole.values, waits.values);
             if (options_.peer.empty() || (!whole.note.empty() && whole.peers.empty())) continue;
             try {
                 if (time(options_.peer, false, whole.peers, waits.peers) != own)

@@ -49,7 +49,6 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
         if (spec.host != 0) {
             handles_.push_back(make_remote_node(options_.hosts->line_to(spec.host), spec.name, spec.json,
                                                 options_.stall_seconds));
-            elsewhere_too_ = true;
             continue;
         }
         if (options_.hosts || spec.in_process.value_or(options_.in_process)) {
@@ -59,8 +58,9 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
         if (!processes_) processes_ = std::make_unique<NodeProcesses>();
         handles_.push_back(make_remote_node(start_node_process(*processes_, spec.name, options_.node_command),
                                             spec.name, spec.json, options_.stall_seconds));
-        elsewhere_too_ = true;
     }
+    elsewhere_too_ =
+        std::any_of(handles_.begin(), handles_.end(), [](const auto& handle) { return handle->elsewhere(); });
     for (const auto& handle : handles_)
         handle->await_ready();
     in_windows_ = options_.windows && !elsewhere_too_ && !options_.realtime;

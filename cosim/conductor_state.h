@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "cosim/conductor.h"
+#include "cosim/core/wall_clock.h"
 #include "cosim/remote/processes/node_processes.h"
 #include "cosim/schedule/network.h"
 #include "cosim/schedule/schedule.h"
@@ -26,12 +27,6 @@
 #include <vector>
 
 namespace puckloop::cosim {
-
-using WallClock = std::chrono::steady_clock;
-
-inline double seconds_since(WallClock::time_point start) {
-    return std::chrono::duration<double>(WallClock::now() - start).count();
-}
 
 /// Looks at several programs before one of them is waited for; some 20 us.
 inline constexpr int kLooksAtSeveral = 100;

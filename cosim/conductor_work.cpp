@@ -163,11 +163,8 @@ void Conductor::State::collect_elsewhere(bool wait) {
             any = true;
         }
         if (any) return;
-        if (looks != 2) return;
-        if (processes_)
-            processes_->await_answers(seen, elsewhere_.size());
-        else
-            options_.hosts->await_answers();
+        if (looks == 2)
+            processes_ ? processes_->await_answers(seen, elsewhere_.size()) : options_.hosts->await_answers();
     }
 }
 

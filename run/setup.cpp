@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "cosim/remote/node_hosts.h"
 #include "emu/camera/model.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/board.h"
@@ -23,6 +24,7 @@
 #include "run/nodes/plan_kit.h"
 #include "run/nodes/radio_nodes.h"
 #include "run/nodes/tam_nodes.h"
+#include "run/plan/host_plan.h"
 #include "run/plan/node_faults.h"
 #include "run/plan/overrides.h"
 #include "run/plan/state_plan.h"
@@ -236,7 +238,9 @@ void debug_board(RunSetup& setup, const std::string& assignment) {
         if (!has_board(node.what)) continue;
         known += (known.empty() ? "" : ", ") + node.name;
         if (node.name != name || equals == assignment.size()) continue;
-        node.what.care = {.gdb = assignment.substr(equals + 1), .stats = node.what.care.stats, .watches = node.what.care.watches};
+        node.what.care = {.gdb = assignment.substr(equals + 1),
+                          .stats = node.what.care.stats,
+                          .watches = node.what.care.watches};
         node.in_process = true;
         node.any_thread = false;
         return;
@@ -311,6 +315,7 @@ RunSetup set_up(const RunRequest& request) {
     plan_stats(setup, request);
     plan_snapshots(setup, request);
     plan_expectations(setup, request);
+    if (request.hosts) plan_hosts(setup, request.hosts->count());
     for (const auto& file : {request.junit, request.tap})
         if (!file.empty()) check_writable(file);
     return setup;

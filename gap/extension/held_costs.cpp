@@ -47,13 +47,7 @@ LearningRows held_rows(const Subject& subject, const std::vector<char>& used, st
     if (next == used.size()) return rows;
     const std::uint32_t run = subject.run[next];
     for (; next < used.size() && subject.run[next] == run; ++next) {
-        if (used[next] != 0) continue;
-        const bool follows = !rows.row.empty() && rows.row.back() + 1 == next;
-        const bool known = std::isfinite(subject.error[next]);
-        rows.starts.push_back(subject.starts[next] != 0 || !follows ? 1 : 0);
-        rows.row.push_back(next);
-        rows.known.push_back(known ? 1 : 0);
-        rows.error.push_back(known ? subject.error[next] : 0.0);
+        if (used[next] == 0) rows.add(subject, next, !rows.row.empty() && rows.row.back() + 1 == next);
     }
     return rows;
 }

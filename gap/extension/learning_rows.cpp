@@ -9,6 +9,14 @@ namespace {
 constexpr std::size_t kRowsTogether = 60;  // rows that stay together
 }  // namespace
 
+void LearningRows::add(const Subject& subject, std::size_t i, bool follows) {
+    const bool is_known = std::isfinite(subject.error[i]);
+    row.push_back(i);
+    starts.push_back(subject.starts[i] != 0 || !follows ? 1 : 0);
+    known.push_back(is_known ? 1 : 0);
+    error.push_back(is_known ? subject.error[i] : 0.0);
+}
+
 LearningRows learning_rows(const Subject& subject, const std::vector<char>& used, std::size_t most) {
     const auto all = static_cast<double>(std::ranges::count(used, 1));
     const double share = std::min(1.0, static_cast<double>(most) / std::max(all, 1.0));
@@ -25,11 +33,7 @@ LearningRows learning_rows(const Subject& subject, const std::vector<char>& used
             follows = false;
             continue;
         }
-        const bool known = std::isfinite(subject.error[i]);
-        rows.row.push_back(i);
-        rows.starts.push_back(subject.starts[i] != 0 || !follows ? 1 : 0);
-        rows.known.push_back(known ? 1 : 0);
-        rows.error.push_back(known ? subject.error[i] : 0.0);
+        rows.add(subject, i, follows);
         follows = true;
     }
     return rows;

@@ -13,6 +13,9 @@ struct LearningRows {
     std::vector<std::size_t> row;  ///< of the subject
     std::vector<double> error;     ///< 0 where it is not known
     std::vector<char> starts, known;
+
+    /// Row `i` of the subject; `follows`: it comes behind the last one.
+    void add(const Subject& subject, std::size_t i, bool follows);
 };
 
 inline constexpr std::size_t kRowsToFit = 6000;  ///< that values are fitted to: some are thinned beyond

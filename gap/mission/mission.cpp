@@ -33,14 +33,6 @@ const char* name_of(Finding finding) {
 
 using Rows = std::vector<const Run*>;
 
-Rows rows_of(const MissionRuns& runs, const std::string& program, const std::string* condition) {
-    Rows rows;
-    for (const Run& run : runs.runs)
-        if (run.program == program && (condition == nullptr || run.condition == *condition))
-            rows.push_back(&run);
-    return rows;
-}
-
 Group group_of(const Rows& rows, const std::vector<std::size_t>& columns) {
     Group group(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
     for (std::size_t r = 0; r < rows.size(); ++r)
@@ -137,14 +129,14 @@ MissionVerdict judge(const MissionRuns& measured, const MissionRuns& simulated, 
     Groups groups;
     groups.effects.resize(verdict.effects.size());
     for (const std::string& program : verdict.programs) {
-        const Rows real = rows_of(measured, program, nullptr);
-        const Rows base = rows_of(simulated, program, &verdict.base);
+        const Rows real = runs_of(measured, program, nullptr);
+        const Rows base = runs_of(simulated, program, &verdict.base);
         verdict.measured_runs += real.size();
         verdict.simulated_runs += base.size();
         groups.measured.push_back(group_of(real, columns));
         groups.simulated.push_back(group_of(base, columns));
         for (std::size_t e = 0; e < verdict.effects.size(); ++e) {
-            const Rows changed = rows_of(simulated, program, &verdict.effects[e]);
+            const Rows changed = runs_of(simulated, program, &verdict.effects[e]);
             verdict.simulated_runs += changed.size();
             groups.effects[e].push_back(group_of(changed, columns));
         }

@@ -4,7 +4,6 @@
 #include "base/random.h"
 #include "gap/mission/mission.h"
 
-#include <boost/math/distributions/binomial.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,9 +22,7 @@ class Source {
   public:
     Source(const MissionRuns& runs, const std::string& program) {
         for (const std::string& condition : runs.conditions) {
-            std::vector<const Values*> rows;
-            for (const Run& run : runs.runs)
-                if (run.program == program && run.condition == condition) rows.push_back(&run.values);
+            const std::vector<const Run*> rows = runs_of(runs, program, &condition);
             if (rows.size() < kFewestRunsEach)
                 throw InputError(
                     (runs.folder / "results.csv").string(), "",
@@ -33,15 +30,15 @@ class Source {
                     "four or more");
             const auto count = static_cast<double>(rows.size());
             Values mean(runs.statistics.size(), 0.0);
-            for (const Values* row : rows)
+            for (const Run* row : rows)
                 for (std::size_t k = 0; k < mean.size(); ++k)
-                    mean[k] += (*row)[k] / count;
+                    mean[k] += row->values[k] / count;
             // Deviations from their own mean scatter too little.
             const double widened = std::sqrt(count / (count - 1.0));
-            for (const Values* row : rows) {
+            for (const Run* row : rows) {
                 Values residual(mean.size());
                 for (std::size_t k = 0; k < mean.size(); ++k)
-                    residual[k] = widened * ((*row)[k] - mean[k]);
+                    residual[k] = widened * (row->values[k] - mean[k]);
                 residuals_.push_back(std::move(residual));
             }
             means_.push_back(std::move(mean));
@@ -134,14 +131,6 @@ Power power_of(const MissionRuns& simulated, const PowerRequest& request) {
         power.curves.push_back(std::move(curve));
     }
     return power;
-}
-
-Limits limits_of(std::size_t hits, std::size_t of) {
-    constexpr double kSide = 0.025;
-    using Binomial = boost::math::binomial_distribution<double>;
-    const auto n = static_cast<double>(of), k = static_cast<double>(hits);
-    return {hits == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, kSide),
-            hits == of ? 1.0 : Binomial::find_upper_bound_on_p(n, k, kSide)};
 }
 
 }  // namespace puckloop::gap::mission

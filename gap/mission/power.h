@@ -29,11 +29,11 @@ struct PowerRequest {
 /// Of one effect, or of nothing hidden, at one number of runs.
 struct PowerPoint {
     std::size_t runs = 0;
-    std::size_t cases = 0;
-    std::size_t right = 0;  ///< named, and it is the one; of nothing hidden: no difference is shown
-    std::size_t wrong = 0;  ///< another one is named first; of nothing hidden: any
-    std::size_t open = 0;   ///< a difference is shown, and no name for sure
-    std::size_t same = 0;   ///< no difference is shown
+    int cases = 0;
+    int right = 0;  ///< named, and it is the one; of nothing hidden: no difference is shown
+    int wrong = 0;  ///< another one is named first; of nothing hidden: any
+    int open = 0;   ///< a difference is shown, and no name for sure
+    int same = 0;   ///< no difference is shown
 };
 
 struct PowerCurve {
@@ -50,12 +50,6 @@ struct Power {
 
 /// Throws InputError: an experiment with one condition, or fewer than four runs of a program under one.
 Power power_of(const MissionRuns& simulated, const PowerRequest& request);
-
-/// Clopper and Pearson's limits of hits / of, 95 %, two-sided.
-struct Limits {
-    double low = 0.0, high = 1.0;
-};
-Limits limits_of(std::size_t hits, std::size_t of);
 
 /// For a terminal: a table, and for each effect the first number of runs that names it in 8 of 10.
 std::string power_text(const Power& power);

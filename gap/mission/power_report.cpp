@@ -2,6 +2,7 @@
 
 #include "base/chart.h"
 #include "gap/mission/power.h"
+#include "gap/stats/rate.h"
 
 #include <fmt/format.h>
 
@@ -16,17 +17,16 @@ constexpr double kEnough = 0.8;
 constexpr double kWidth = 640, kHeight = 380;  // pixels
 constexpr std::array kColours{"#1f618d", "#b03a2e", "#1e8449", "#b9770e", "#6c3483", "#117a65", "#616a6b"};
 
-double share_of(std::size_t hits, std::size_t of) {
-    return static_cast<double>(hits) / static_cast<double>(of);
+double share_of(int hits, int of) {
+    return rate_of(hits, of).share();
 }
 
 std::string name_of(const PowerCurve& curve) {
     return curve.effect.empty() ? "(nothing hidden)" : curve.effect;
 }
 
-std::string with_limits(std::size_t hits, std::size_t of) {
-    const Limits limits = limits_of(hits, of);
-    return fmt::format("{:.2f} ({:.2f} to {:.2f})", share_of(hits, of), limits.low, limits.high);
+std::string with_limits(const Rate& rate) {
+    return fmt::format("{:.2f} ({:.2f} to {:.2f})", rate.share(), rate.low, rate.high);
 }
 
 }  // namespace
@@ -39,10 +39,10 @@ std::string power_text(const Power& power) {
                     power.request.cases, "hidden", "runs", "right (95 %)", "wrong", "open", "same");
     for (const PowerCurve& curve : power.curves)
         for (const PowerPoint& point : curve.points)
-            text +=
-                fmt::format("{:<24} {:>5} {:>22} {:>6.2f} {:>6.2f} {:>6.2f}\n", name_of(curve), point.runs,
-                            with_limits(point.right, point.cases), share_of(point.wrong, point.cases),
-                            share_of(point.open, point.cases), share_of(point.same, point.cases));
+            text += fmt::format("{:<24} {:>5} {:>22} {:>6.2f} {:>6.2f} {:>6.2f}\n", name_of(curve),
+                                point.runs, with_limits(rate_of(point.right, point.cases)),
+                                share_of(point.wrong, point.cases), share_of(point.open, point.cases),
+                                share_of(point.same, point.cases));
     text += "\n";
     for (const PowerCurve& curve : power.curves) {
         if (curve.effect.empty()) continue;
@@ -62,10 +62,10 @@ std::string power_csv(const Power& power) {
     std::string text = "effect,runs,cases,right,wrong,open,same,right_low,right_high\n";
     for (const PowerCurve& curve : power.curves)
         for (const PowerPoint& point : curve.points) {
-            const Limits limits = limits_of(point.right, point.cases);
+            const Rate rate = rate_of(point.right, point.cases);
             text +=
                 fmt::format("\"{}\",{},{},{},{},{},{},{:.4f},{:.4f}\n", curve.effect, point.runs, point.cases,
-                            point.right, point.wrong, point.open, point.same, limits.low, limits.high);
+                            point.right, point.wrong, point.open, point.same, rate.low, rate.high);
         }
     return text;
 }
@@ -89,8 +89,8 @@ std::string power_svg(const Power& power) {
                         kAside *
                             (static_cast<double>(c) - 0.5 * static_cast<double>(power.curves.size() - 1)));
             y.push_back(share_of(point.right, point.cases));
-            const Limits limits = limits_of(point.right, point.cases);
-            chart.interval(x.back(), y.back(), limits.low, limits.high, colour);
+            const Rate rate = rate_of(point.right, point.cases);
+            chart.interval(x.back(), y.back(), rate.low, rate.high, colour);
         }
         chart.line(x, y, colour, curve.effect.empty() ? "nothing hidden" : curve.effect,
                    curve.effect.empty());

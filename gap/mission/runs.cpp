@@ -58,6 +58,15 @@ void note(std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+std::vector<const Run*> runs_of(const MissionRuns& all, const std::string& program,
+                                const std::string* condition) {
+    std::vector<const Run*> runs;
+    for (const Run& run : all.runs)
+        if (run.program == program && (condition == nullptr || run.condition == *condition))
+            runs.push_back(&run);
+    return runs;
+}
+
 MissionRuns read_mission_runs(const fs::path& folder) {
     const fs::path file = folder / "results.csv";
     std::ifstream in(file);
@@ -97,10 +106,8 @@ MissionRuns read_mission_runs(const fs::path& folder) {
     }
     for (const std::string& program : all.programs)
         for (const std::string& condition : all.conditions) {
-            const auto runs = std::count_if(all.runs.begin(), all.runs.end(), [&](const Run& run) {
-                return run.program == program && run.condition == condition;
-            });
-            if (static_cast<std::size_t>(runs) < kFewestRuns)
+            const std::size_t runs = runs_of(all, program, &condition).size();
+            if (runs < kFewestRuns)
                 throw InputError(file.string(), "",
                                  fmt::format("program {}{}{} has {} run{}", program,
                                              condition.empty() ? "" : ", condition ", condition, runs,

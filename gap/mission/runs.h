@@ -29,6 +29,9 @@ struct MissionRuns {
     std::size_t failed = 0;                         ///< rows without score and track
 };
 
+/// Those of a program under a condition; null: under any.
+std::vector<const Run*> runs_of(const MissionRuns& all, const std::string& program,
+                                const std::string* condition);
 /// Throws InputError with file and line: no such file, a column that is missing, a run without a track, rows
 /// that are no numbers, fewer than two runs of a program.
 MissionRuns read_mission_runs(const std::filesystem::path& folder);

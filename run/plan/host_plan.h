@@ -1,5 +1,5 @@
 #pragma once
-// On which host of a run each node lives: what stands close together stays together, so that a robot's
+// On which host of a run each node lives: what is close together stays together, so that a robot's
 // boards, and robots in each other's light, are on one.
 
 #include "run/description/run_setup.h"

@@ -349,14 +349,14 @@ DescribedCase one_case(const Kind& kind, const DescribedTest& test, std::size_t 
 }
 
 template <class Is>
-grammar::Rate rate(const std::vector<DescribedCase>& cases, HiddenIn hidden, const Is& is) {
+Rate rate(const std::vector<DescribedCase>& cases, HiddenIn hidden, const Is& is) {
     int hits = 0, of = 0;
     for (const DescribedCase& one : cases) {
         if (one.hidden != hidden) continue;
         ++of;
         hits += std::invoke(is, one) ? 1 : 0;
     }
-    return grammar::rate_of(hits, of);
+    return rate_of(hits, of);
 }
 
 }  // namespace
@@ -385,14 +385,14 @@ std::string described_text(const std::vector<DescribedCase>& cases, const Descri
     std::string text = fmt::format("{} cases, {} runs of {} rows each, seed {}; shares with 95 % limits\n",
                                    cases.size(), kRuns, kRows, test.seed);
     text += fmt::format("an effect of the kind is hidden: named first {}, another name first {}\n",
-                        grammar::share_text(rate(cases, HiddenIn::Kind, &DescribedCase::first_right)),
-                        grammar::share_text(rate(cases, HiddenIn::Kind, &DescribedCase::wrong)));
+                        share_text(rate(cases, HiddenIn::Kind, &DescribedCase::first_right)),
+                        share_text(rate(cases, HiddenIn::Kind, &DescribedCase::wrong)));
     text += fmt::format("nothing is hidden: no effect {}, a name {}\n",
-                        grammar::share_text(rate(cases, HiddenIn::Nothing, said("no_effect"))),
-                        grammar::share_text(rate(cases, HiddenIn::Nothing, &DescribedCase::wrong)));
+                        share_text(rate(cases, HiddenIn::Nothing, said("no_effect"))),
+                        share_text(rate(cases, HiddenIn::Nothing, &DescribedCase::wrong)));
     text += fmt::format("something else is hidden: unexplained {}, a name {}\n",
-                        grammar::share_text(rate(cases, HiddenIn::Outside, said("unexplained"))),
-                        grammar::share_text(rate(cases, HiddenIn::Outside, &DescribedCase::wrong)));
+                        share_text(rate(cases, HiddenIn::Outside, said("unexplained"))),
+                        share_text(rate(cases, HiddenIn::Outside, &DescribedCase::wrong)));
     double seconds = 0.0;
     for (const DescribedCase& one : cases)
         seconds = std::max(seconds, one.wall_s);
@@ -405,7 +405,7 @@ bool described_met(const std::vector<DescribedCase>& cases) {
         if (!one.error.empty()) return false;
         wrong += one.wrong() ? 1 : 0;
     }
-    return grammar::rate_of(wrong, static_cast<int>(cases.size())).low <= kMostWrong;
+    return rate_of(wrong, static_cast<int>(cases.size())).low <= kMostWrong;
 }
 
 }  // namespace puckloop::gap::selftest

@@ -5,7 +5,7 @@
 // it cannot show that the formulas are true, which only measurements can.
 
 #include "gap/kinds/kind.h"
-#include "selftest/grammar/rates.h"
+#include "gap/stats/rate.h"
 
 #include <cstdint>
 #include <filesystem>

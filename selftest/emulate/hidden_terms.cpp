@@ -4,8 +4,8 @@
 #include "base/text_file.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/reading/read_experiment.h"
+#include "gap/stats/rate.h"
 #include "selftest/emulate/secret_cases.h"
-#include "selftest/grammar/rates.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -192,8 +192,6 @@ std::string term_line(const TermResult& r) {
 }
 
 std::string terms_text(const std::vector<TermResult>& results) {
-    using selftest::grammar::rate_of;
-    using selftest::grammar::share_text;
     const auto count = [&](const auto& is) {
         return static_cast<int>(std::count_if(results.begin(), results.end(), is));
     };

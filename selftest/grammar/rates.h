@@ -1,6 +1,7 @@
 #pragma once
 // Rates of verdicts over drawn cases with exact binomial intervals, calibration of intervals.
 
+#include "gap/stats/rate.h"
 #include "selftest/grammar/outcome.h"
 
 #include <array>
@@ -8,16 +9,6 @@
 #include <vector>
 
 namespace puckloop::gap::selftest::grammar {
-
-/// Clopper and Pearson, 95 %, two-sided.
-struct Rate {
-    int hits = 0, of = 0;
-    double low = 0.0, high = 1.0;
-    double share() const { return of == 0 ? 0.0 : static_cast<double>(hits) / of; }
-};
-Rate rate_of(int hits, int of);
-/// "88 % (73 to 96; 35 of 40)": share, limits, counts.
-std::string share_text(const Rate& rate);
 
 struct Target {
     std::string what;

@@ -4,10 +4,8 @@
 #include "base/log.h"
 #include "base/plain_text.h"
 #include "cosim/interrupt.h"
-#include "cosim/remote/node_hosts.h"
 #include "run/driven/driven_run.h"
 #include "run/factory/node_process.h"
-#include "run/plan/host_plan.h"
 #include "run/plan/overrides.h"
 #include "run/plan/parameter_list.h"
 #include "run/report/report.h"
@@ -153,7 +151,6 @@ int run_scenario_file(RunOptions& options) {
     request.cache = !options.no_cache && !options.control;
     if (!request.from.empty()) request = going_on(request);
     RunSetup setup = set_up(request);
-    if (request.hosts) plan_hosts(setup, request.hosts->count());
     if (options.control) let_client_drive(setup, request);
     for (const std::string& note : setup.scenario.not_taken)
         fmt::print(stderr, "{}: {}\n", request.scenario.string(), note);

@@ -4,7 +4,6 @@
 #include "base/shipped_files.h"
 #include "benchmark/lab_scenario.h"
 #include "cosim/interrupt.h"
-#include "run/plan/host_plan.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"
 #include "tools/cli/check.h"
@@ -43,8 +42,7 @@ HostCost measure(cosim::MpiHosts& hosts, const ScaleOptions& options, int robots
     request.hosts = &hosts;
     const cosim::MpiTraffic before = hosts.traffic();
     const double worked_before = hosts.worked_s();
-    RunSetup setup = set_up(request);
-    plan_hosts(setup, hosts.count());
+    const RunSetup setup = set_up(request);
     const cosim::InterruptGuard interrupt;
     const cosim::Outcome outcome = run_scenario(setup, request, {}, &interrupt);
     if (!outcome.success) throw RunError(outcome.text);

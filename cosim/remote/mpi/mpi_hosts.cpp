@@ -1,5 +1,6 @@
 #include "cosim/remote/mpi/mpi_hosts.h"
 
+#include "cosim/core/wall_clock.h"
 #include "cosim/remote/mpi/rank_server.h"
 #include "cosim/remote/protocol.h"
 
@@ -9,16 +10,6 @@
 #include <array>
 
 namespace puckloop::cosim {
-
-namespace {
-
-using WallClock = std::chrono::steady_clock;
-
-double seconds_since(WallClock::time_point begun) {
-    return std::chrono::duration<double>(WallClock::now() - begun).count();
-}
-
-}  // namespace
 
 class MpiHosts::Line : public NodeLine {
   public:

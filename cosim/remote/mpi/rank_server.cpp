@@ -2,12 +2,12 @@
 
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "cosim/core/wall_clock.h"
 #include "cosim/remote/mpi/patience.h"
 #include "cosim/remote/node_session.h"
 
 #include <sys/resource.h>
 
-#include <chrono>
 #include <exception>
 #include <map>
 #include <memory>
@@ -16,8 +16,6 @@
 namespace puckloop::cosim {
 
 namespace {
-
-using WallClock = std::chrono::steady_clock;
 
 /// Of programs that have ended.
 double programs_s() {
@@ -87,7 +85,7 @@ class RankServer {
         const auto begun = WallClock::now();
         try {
             const bool done = work();
-            worked_s_ += std::chrono::duration<double>(WallClock::now() - begun).count();
+            worked_s_ += seconds_since(begun);
             if (!done) return waiting_.push_back(tag);
             served.answer.send(0, tag, served.session.answer());
         } catch (const InputError& error) {

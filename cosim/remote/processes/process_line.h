@@ -1,5 +1,5 @@
 #pragma once
-// The line to a node in a process of its own: rings in anonymous memory, nothing of it stands on the file
+// The line to a node in a process of its own: rings in anonymous memory, nothing of it is on the file
 // system.
 
 #include "cosim/remote/node_line.h"

@@ -3,11 +3,13 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "gap/mission/power.h"
+#include "gap/stats/rate.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 using namespace puckloop;
+using namespace puckloop::gap;
 using namespace puckloop::gap::mission;
 
 namespace {
@@ -88,9 +90,9 @@ TEST_CASE("an experiment without effects, or with too few runs, has no power to 
 }
 
 TEST_CASE("limits of a share are Clopper and Pearson's") {
-    CHECK(limits_of(0, 10).low == 0.0);
-    CHECK(limits_of(0, 10).high == Approx(0.3085).epsilon(1e-3));
-    CHECK(limits_of(8, 10).low == Approx(0.4439).epsilon(1e-3));
-    CHECK(limits_of(8, 10).high == Approx(0.9748).epsilon(1e-3));
-    CHECK(limits_of(10, 10).high == 1.0);
+    CHECK(rate_of(0, 10).low == 0.0);
+    CHECK(rate_of(0, 10).high == Approx(0.3085).epsilon(1e-3));
+    CHECK(rate_of(8, 10).low == Approx(0.4439).epsilon(1e-3));
+    CHECK(rate_of(8, 10).high == Approx(0.9748).epsilon(1e-3));
+    CHECK(rate_of(10, 10).high == 1.0);
 }

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <set>
 
+using puckloop::gap::rate_of;
 using namespace puckloop;
 using namespace puckloop::gap::selftest;
 using namespace puckloop::gap::selftest::grammar;
