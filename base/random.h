@@ -19,7 +19,7 @@ class RandomStream {
     double normal();                       ///< mean 0, standard deviation 1 (polar method, both values used)
     std::uint64_t below(std::uint64_t n);  ///< uniform in [0, n), n > 0, without modulo bias
 
-    /// The position in the stream (base/archive.h).
+    /// The position in the stream (base/states/archive.h).
     template <class Archive>
     void state(Archive& archive) {
         archive(state_, spare_, has_spare_);

@@ -1,10 +1,10 @@
 #include "bench/bench_instruments.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
-#include "base/partial_file.h"
-#include "base/suggest.h"
-#include "base/text_file.h"
+#include "base/files/new_file.h"
+#include "base/files/partial_file.h"
+#include "base/files/text_file.h"
+#include "base/text/suggest.h"
 #include "emu/image/line_table.h"
 #include "emu/image/symbol_sizes.h"
 

@@ -6,7 +6,7 @@
 #include "debug/instruction_trace.h"
 #include "debug/instruments.h"
 #include "debug/places.h"
-#include "debug/profile.h"
+#include "debug/profile/profile.h"
 #include "emu/image/image.h"
 
 #include <memory>

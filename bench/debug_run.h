@@ -2,7 +2,7 @@
 // `exec --gdb`: a bench under a debugger.
 
 #include "bench/debugged.h"
-#include "debug/gdb_session.h"
+#include "debug/gdb/gdb_session.h"
 
 #include <functional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "bench/history.h"
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "debug/debug_chip.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "bench/logs.h"
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/new_file.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // `puckloop exec`: from options to a bench, through the run, to the report.
 
 #include "base/error.h"
-#include "base/log.h"
+#include "base/logs/log.h"
 #include "bench/debug_run.h"
 #include "bench/exec_report.h"
 #include "bench/options.h"

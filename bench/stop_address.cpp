@@ -1,7 +1,7 @@
 // `--stop-at SYMBOL|0xPC|FILE:LINE`.
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "bench/options.h"
 
 #include <fmt/format.h>

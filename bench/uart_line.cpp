@@ -1,6 +1,6 @@
 #include "bench/uart_line.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "bench/targets/target.h"
 #include "cosim/core/message.h"
 #include "ends/uart_end.h"
-#include "protocols/uart_line.h"
+#include "protocols/serial/uart_line.h"
 
 #include <memory>
 #include <vector>

@@ -1,8 +1,8 @@
 // `puckloop bench --case avr`: this project's ATmega1284P and libsimavr on the same ELFs, in turn.
 
-#include "base/shipped_files.h"
-#include "benchmark/avr_speed.h"
+#include "base/files/shipped_files.h"
 #include "benchmark/case_kit.h"
+#include "benchmark/speeds/avr_speed.h"
 
 #include <fmt/format.h>
 

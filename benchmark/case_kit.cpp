@@ -1,13 +1,13 @@
 #include "benchmark/case_kit.h"
 
 #include "base/error.h"
-#include "base/shipped_files.h"
-#include "benchmark/board_replay.h"
-#include "benchmark/mark_speed.h"
-#include "benchmark/process_memory.h"
-#include "benchmark/rab_speed.h"
-#include "benchmark/reference.h"
-#include "benchmark/wander_scenario.h"
+#include "base/files/shipped_files.h"
+#include "benchmark/measures/process_memory.h"
+#include "benchmark/measures/reference.h"
+#include "benchmark/scenarios/wander_scenario.h"
+#include "benchmark/speeds/board_replay.h"
+#include "benchmark/speeds/mark_speed.h"
+#include "benchmark/speeds/rab_speed.h"
 #include "emu/dspic/chip/core_bench.h"
 
 #include <fmt/format.h>

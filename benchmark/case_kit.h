@@ -3,7 +3,7 @@
 // build and the peer run right after each other, so that a machine whose speed drifts changes no ratio.
 
 #include "benchmark/cases.h"
-#include "benchmark/timed_run.h"
+#include "benchmark/measures/timed_run.h"
 
 #include <functional>
 #include <optional>
@@ -27,20 +27,20 @@ class Kit {
     std::filesystem::path rab_image() const;
 
     void time_core();
-    /// The ATmega1284P beside libsimavr (benchmark/avr_speed.h).
+    /// The ATmega1284P beside libsimavr (benchmark/speeds/avr_speed.h).
     void time_avr();
     /// Range-and-bearing boards alone, one at a time.
     void time_boards();
     void time_runs(const std::string& name, const RunSpec& spec);
-    /// Runs beside their boards alone (benchmark/board_replay.h).
+    /// Runs beside their boards alone (benchmark/speeds/board_replay.h).
     void time_overhead(const std::string& name, const std::filesystem::path& scenario, double simulated_s);
     /// Wandering robots: real-time factors, and what a robot costs among many.
     void time_growth(double simulated_s);
-    /// The physical world alone, part by part (benchmark/world_cost.h).
+    /// The physical world alone, part by part (benchmark/speeds/world_cost.h).
     void time_world();
     /// Images on the main board that wait.
     void time_waiting();
-    /// Twenty robots of a laboratory, and what their cost is made of (benchmark/work_profile.h).
+    /// Twenty robots of a laboratory, and what their cost is made of (benchmark/speeds/work_profile.h).
     void time_lab20();
     /// Wandering robots: peak memory.
     void weigh(double simulated_s);

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "benchmark/case_kit.h"
-#include "benchmark/rab_scenario.h"
+#include "benchmark/scenarios/rab_scenario.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 #pragma once
 // The cases of `puckloop bench`. docs/bench.md states what each figure means.
 
-#include "benchmark/figure.h"
+#include "benchmark/measures/figure.h"
 
 #include <filesystem>
 #include <string>

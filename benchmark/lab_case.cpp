@@ -1,8 +1,8 @@
 // The case "lab20" of `puckloop bench`: a laboratory's twenty robots, and what their cost is made of.
 
 #include "benchmark/case_kit.h"
-#include "benchmark/lab_scenario.h"
-#include "benchmark/work_profile.h"
+#include "benchmark/scenarios/lab_scenario.h"
+#include "benchmark/speeds/work_profile.h"
 #include "emu/dspic/chip/core_bench.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // The case "wait" of `puckloop bench`: images on the main board that wait for a partner who sends nothing.
 
 #include "base/error.h"
+#include "base/files/shipped_files.h"
 #include "base/json.h"
-#include "base/shipped_files.h"
 #include "benchmark/case_kit.h"
 
 #include <fmt/format.h>

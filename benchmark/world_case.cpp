@@ -1,7 +1,7 @@
 // The case "world" of `puckloop bench`.
 
 #include "benchmark/case_kit.h"
-#include "benchmark/world_cost.h"
+#include "benchmark/speeds/world_cost.h"
 
 #include <fmt/format.h>
 

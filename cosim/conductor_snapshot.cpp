@@ -3,8 +3,8 @@
 // At the instant of a snapshot all nodes stand there and none has run ahead, as at the end of a run. How
 // grants are cut changes nothing in a run, so pausing does not either.
 
-#include "base/archive.h"
 #include "base/error.h"
+#include "base/states/archive.h"
 #include "cosim/conductor_state.h"
 #include "cosim/resume/run_snapshot.h"
 

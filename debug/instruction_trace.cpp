@@ -1,8 +1,8 @@
 #include "debug/instruction_trace.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
-#include "base/partial_file.h"
+#include "base/files/new_file.h"
+#include "base/files/partial_file.h"
 
 #include <fmt/format.h>
 

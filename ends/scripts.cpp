@@ -1,7 +1,7 @@
 #include "ends/scripts.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "ends/text_input.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "replay/dump.h"
 
-#include "traces/export.h"
+#include "traces/formats/export.h"
 
 namespace puckloop::tools {
 

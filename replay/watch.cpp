@@ -1,7 +1,7 @@
 #include "replay/watch.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "reproductions/exchange_times.h"
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 #include "base/quantile.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "reproductions/pictures.h"
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include "reproductions/pause_times.h"
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/random.h"
-#include "base/text_file.h"
 #include "reproductions/runs/scratch_run.h"
 #include "traces/recorded_trace.h"
 

@@ -1,6 +1,6 @@
 #include "reproductions/team_trace.h"
 
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "reproductions/trial.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "reproductions/runs/scratch_run.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "selftest/case_list.h"
 
 #include "base/random.h"
-#include "selftest/benches.h"
+#include "selftest/benches/benches.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Which cases a self test of a given size has.
 
-#include "selftest/hidden_case.h"
+#include "selftest/benches/hidden_case.h"
 
 #include <cstdint>
 #include <vector>

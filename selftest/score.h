@@ -2,7 +2,7 @@
 // From verdicts to rates: what the tool said against what was hidden.
 
 #include "gap/verdict/verdict.h"
-#include "selftest/hidden_case.h"
+#include "selftest/benches/hidden_case.h"
 
 #include <string>
 #include <vector>

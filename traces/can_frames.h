@@ -7,7 +7,7 @@
 // and dominant bits of a fault are not in the trace and not drawn.
 
 #include "cosim/trace/trace_row.h"
-#include "protocols/can_reader.h"
+#include "protocols/can/can_reader.h"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "traces/lines.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 #include "traces/can_frames.h"
 #include "traces/received.h"
 

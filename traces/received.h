@@ -7,7 +7,7 @@
 // taken as they were sent. Deviation: each frame is sampled as if the line rested behind it.
 
 #include "cosim/trace/trace_row.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <cstdint>
 #include <optional>

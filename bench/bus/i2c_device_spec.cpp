@@ -1,7 +1,7 @@
 #include "bench/bus/i2c_device_spec.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "emu/i2c_devices/ground_sensor.h"
 #include "emu/i2c_devices/lsm330.h"
 #include "emu/i2c_devices/rgb_turret.h"

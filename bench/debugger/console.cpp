@@ -1,7 +1,7 @@
 #include "bench/debugger/console.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "bench/debugger/line_editor.h"
 
 #include <fmt/format.h>

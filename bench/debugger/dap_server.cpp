@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "bench/debugger/dap_channel.h"
 #include "bench/debugger/dap_views.h"
 

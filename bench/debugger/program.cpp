@@ -1,7 +1,7 @@
 #include "bench/debugger/program.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "emu/image/line_table.h"
 #include "emu/image/symbol_sizes.h"
 

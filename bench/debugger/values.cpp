@@ -1,7 +1,7 @@
 #include "bench/debugger/values.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "debug/core_register.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 // change any of it: `adc0 1.2`, `PD6 0`. The two-wire bus is empty, unless devices are put on it or a script
 // is its master.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "bench/bus/device_bus.h"
 #include "bench/targets/avr_target.h"
 

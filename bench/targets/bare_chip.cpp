@@ -3,7 +3,7 @@
 // room), the supply is 3.3 V, UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`,
 // `RF1 0`.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "bench/targets/dspic_target.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // The chips and boards that may lie on the bench, by the names that the command line takes.
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "bench/targets/target.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/pin_table.h"

@@ -1,6 +1,6 @@
 #include "bench/targets/dspic_target.h"
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "cosim/core/message_state.h"
 #include "cosim/i2c/i2c_shared.h"
 

@@ -1,6 +1,6 @@
 // `--board pic`: the e-puck main board, alone: no Linux board, nobody on its I2C bus but its camera.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "bench/targets/dspic_target.h"
 #include "emu/camera/frame_log.h"
 #include "emu/camera/pictures.h"

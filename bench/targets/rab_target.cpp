@@ -1,13 +1,13 @@
 // `--board rab`: the range-and-bearing board, alone: what its receivers see is the stimulus's, and its bus
 // master the `--i2c` script.
 
-#include "base/archive.h"
 #include "base/json.h"
+#include "base/states/archive.h"
 #include "bench/targets/dspic_target.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_json.h"
 #include "emu/rab_board/rab_log.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <optional>
 

@@ -1,8 +1,8 @@
 // `--board tam`: the TAM, alone: who stands in it, its battery and its switches are the stimulus's. uart1 is
 // the debug console, uart2 the socket of the radio module.
 
-#include "base/archive.h"
 #include "base/json.h"
+#include "base/states/archive.h"
 #include "bench/targets/avr_target.h"
 #include "emu/tam_avr/board.h"
 #include "emu/tam_avr/fuse_check.h"

@@ -1,7 +1,7 @@
 #include "campaigns/engine/campaign.h"
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/files/claimed_folder.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/html.h"
 #include "campaigns/engine/identity.h"

@@ -2,7 +2,7 @@
 // A campaign as its file describes it (docs/faults.md).
 
 #include "base/json.h"
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,8 +1,8 @@
 #include "campaigns/engine/case_run.h"
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
 #include "campaigns/jobs/full_disk.h"
 #include "campaigns/jobs/isolated.h"
 #include "run/factory/node_factory.h"

@@ -1,7 +1,7 @@
 #include "campaigns/engine/html.h"
 
-#include "base/html_page.h"
-#include "base/svg.h"
+#include "base/pages/html_page.h"
+#include "base/pages/svg.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/engine/table.h"
 #include "campaigns/jobs/result_files.h"

@@ -1,6 +1,6 @@
 #include "campaigns/engine/positions.h"
 
-#include "protocols/epuck_fields.h"
+#include "protocols/serial/epuck_fields.h"
 #include "scenarios/values/quantity.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "campaigns/engine/table.h"
 
 #include "base/error.h"
+#include "base/files/shipped_files.h"
 #include "base/plain_text.h"
-#include "base/shipped_files.h"
 #include "campaigns/engine/findings.h"
 #include "campaigns/jobs/result_files.h"
 

@@ -1,7 +1,7 @@
 #include "campaigns/experiment/again.h"
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/files/claimed_folder.h"
 #include "campaigns/experiment/experiment_store.h"
 #include "run/report/results_folder.h"
 

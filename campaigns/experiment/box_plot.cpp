@@ -1,6 +1,6 @@
 #include "campaigns/experiment/box_plot.h"
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 #include "base/quantile.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "campaigns/experiment/experiment_file.h"
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "scenarios/values/reader.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "campaigns/experiment/experiment_run.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "campaigns/jobs/full_disk.h"
 #include "campaigns/jobs/input_files.h"
 #include "campaigns/jobs/isolated.h"

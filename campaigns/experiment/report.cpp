@@ -1,8 +1,8 @@
 #include "campaigns/experiment/report.h"
 
-#include "base/html_page.h"
+#include "base/pages/html_page.h"
+#include "base/pages/svg.h"
 #include "base/quantile.h"
-#include "base/svg.h"
 #include "campaigns/experiment/box_plot.h"
 #include "campaigns/experiment/progress.h"
 #include "campaigns/experiment/tables.h"

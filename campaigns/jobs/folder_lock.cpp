@@ -1,7 +1,7 @@
 #include "campaigns/jobs/folder_lock.h"
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/files/claimed_folder.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "campaigns/jobs/own_process.h"
 
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 
 #include <unistd.h>
 

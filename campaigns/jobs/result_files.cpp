@@ -1,7 +1,7 @@
 #include "campaigns/jobs/result_files.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 
 #include <fmt/format.h>
 

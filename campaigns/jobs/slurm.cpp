@@ -1,7 +1,7 @@
 #include "campaigns/jobs/slurm.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "cosim/can/can_bus.h"
 
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 #include "cosim/can/can_message.h"
 
 #include <fmt/format.h>

@@ -15,7 +15,7 @@
 //  3. A second reason to delay the next frame within one intermission is not limited to two overload frames.
 
 #include "base/fields/field.h"
-#include "base/node_log.h"
+#include "base/logs/node_log.h"
 #include "cosim/can/can_wire.h"
 #include "cosim/core/node.h"
 

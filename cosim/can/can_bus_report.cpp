@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 #include "cosim/can/can_bus.h"
 
 #include <fmt/format.h>

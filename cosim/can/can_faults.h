@@ -3,7 +3,7 @@
 // frames are read inverted and by whom, who is cut off, when the wire is held; and the evidence.
 
 #include "cosim/faults/fault_json.h"
-#include "protocols/can_frame.h"
+#include "protocols/can/can_frame.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,8 @@
 // Frames and errors in and out of a CanMessage.
 
 #include "cosim/core/message.h"
-#include "protocols/can_frame.h"
-#include "protocols/can_reader.h"
+#include "protocols/can/can_frame.h"
+#include "protocols/can/can_reader.h"
 
 namespace puckloop::cosim {
 

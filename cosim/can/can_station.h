@@ -12,8 +12,8 @@
 //  3. A receive error counter above 127 is set to 127 by a good frame (the specification: 119 to 127).
 
 #include "cosim/core/time.h"
-#include "protocols/can_frame.h"
-#include "protocols/can_reader.h"
+#include "protocols/can/can_frame.h"
+#include "protocols/can/can_reader.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
-// Going back for whatever lists its state for a checkpoint (base/checkpoint.h).
+// Going back for whatever lists its state for a checkpoint (base/states/checkpoint.h).
 
-#include "base/checkpoint.h"
+#include "base/states/checkpoint.h"
 #include "cosim/core/node.h"
 
 namespace puckloop::cosim {

@@ -25,7 +25,7 @@ struct UartFrame {
     std::uint8_t stop_bits = 1;   ///< 1 or 2
     std::uint8_t parity_bit = 0;  ///< level of the parity bit on the wire, if any
     std::uint8_t is_break = 0;    ///< 1: the line was low for the whole frame, stop bits included
-    // What only a damaged line does; levels in protocols/uart_sampling.h.
+    // What only a damaged line does; levels in protocols/serial/uart_sampling.h.
     std::uint8_t line = 0;           ///< of kLineInverted and kLineRestsLow
     std::uint32_t glitch_at = 0;     ///< ns from `start`: the level is the other one from there on ...
     std::uint32_t glitch_width = 0;  ///< ... for so many ns; 0: no glitch
@@ -83,7 +83,7 @@ struct Signal {
 };
 
 /// A frame of the 2.4 GHz radio (IEEE 802.15.4 O-QPSK: 250 kbit/s). What its octets mean is the radio's own
-/// (protocols/mesh_frame.h for the XBee mesh). A module hands it to the medium stamped when it wants to
+/// (protocols/radio/mesh_frame.h for the XBee mesh). A module hands it to the medium stamped when it wants to
 /// transmit; the medium hands it on stamped when it ends.
 struct RadioFrame {
     Time start = 0;            ///< the preamble begins
@@ -118,7 +118,7 @@ enum class CanKind : std::uint8_t {
 struct CanMessage {
     Time start = 0;                      ///< of the frame, as this controller saw it; else of the message
     std::array<std::uint8_t, 8> data{};  ///< of the frame
-    std::uint32_t id = 0;                ///< as CanFrame::id (protocols/can_frame.h)
+    std::uint32_t id = 0;                ///< as CanFrame::id (protocols/can/can_frame.h)
     std::uint32_t bit_time = 0;          ///< of the controller, ps; at most 4.29 ms
     std::uint16_t transmit_errors = 0;   ///< from the bus: the counter; 256 and more: bus-off
     std::uint8_t receive_errors = 0;
@@ -137,8 +137,8 @@ inline constexpr std::uint8_t kCanSender = 8, kCanListens = 8;
 inline constexpr std::uint8_t kCanGone = 16;  ///< `tag` had been withdrawn and is not sent again
 inline constexpr int kCanErrorShift = 5, kMostCanError = 5;
 
-/// An IPv4 packet (protocols/ip_packet.h). A computer hands it to its network stamped when its interface
-/// takes it; the network hands it on stamped when it arrives.
+/// An IPv4 packet (protocols/network/ip_packet.h). A computer hands it to its network stamped when its
+/// interface takes it; the network hands it on stamped when it arrives.
 struct Packet {
     Time start = 0;     ///< from a computer: when it was handed over; to one: when its transmission began
     Time duration = 0;  ///< to a computer: of that transmission

@@ -1,7 +1,7 @@
 #pragma once
-// What messages carry, as part of a saved state (base/archive.h).
+// What messages carry, as part of a saved state (base/states/archive.h).
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "cosim/core/message.h"
 
 namespace puckloop::cosim {

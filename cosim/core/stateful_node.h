@@ -1,7 +1,7 @@
 #pragma once
 // A node whose whole state can be saved between two advances, and loaded into a fresh node of the same kind.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "cosim/core/node.h"
 
 namespace puckloop::cosim {

@@ -32,7 +32,7 @@ class Trigger {
     std::uint64_t fired() const { return state_.fired; }
     RandomStream& random() { return random_; }
 
-    /// What changes in a run (base/archive.h).
+    /// What changes in a run (base/states/archive.h).
     template <class Archive>
     void state(Archive& archive) {
         archive(state_.matched, state_.fired, state_.bad, random_);

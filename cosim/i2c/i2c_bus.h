@@ -56,7 +56,7 @@
 // masters is the winner's, of those that go on together the slowest's. 4. Pins driven low by a master's ports
 // do not disturb the bus.
 
-#include "base/checkpoint.h"
+#include "base/states/checkpoint.h"
 #include "cosim/core/node.h"
 #include "cosim/i2c/i2c_faults.h"
 #include "cosim/i2c/i2c_log.h"

@@ -1,7 +1,7 @@
 // What the I2C bus reports of itself: its devices, counters and warnings.
 
 #include "base/json.h"
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 #include "cosim/i2c/i2c_bus.h"
 #include "cosim/i2c/i2c_figures.h"
 

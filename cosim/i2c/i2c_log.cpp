@@ -1,6 +1,6 @@
 #include "cosim/i2c/i2c_log.h"
 
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 #include "cosim/i2c/i2c_figures.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // The log of an I2C bus: who spoke to whom first, and what went wrong, the first time and then at powers of
 // two.
 
-#include "base/node_log.h"
+#include "base/logs/node_log.h"
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
 

@@ -1,7 +1,7 @@
 #include "cosim/resume/run_snapshot.h"
 
-#include "base/archive.h"
 #include "base/error.h"
+#include "base/states/archive.h"
 #include "cosim/core/message_state.h"
 #include "cosim/resume/sealed_file.h"
 #include "cosim/resume/state_file.h"

@@ -1,8 +1,8 @@
 #include "cosim/resume/sealed_file.h"
 
-#include "base/archive.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "base/states/archive.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "cosim/trace/can_row.h"
 
-#include "protocols/can_reader.h"
+#include "protocols/can/can_reader.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "cosim/trace/trace_csv.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "cosim/trace/trace_hash.h"
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 
 #include <fmt/format.h>
 

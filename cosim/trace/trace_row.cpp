@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "cosim/trace/can_row.h"
-#include "protocols/ip_packet.h"
-#include "protocols/irda.h"
+#include "protocols/network/ip_packet.h"
+#include "protocols/serial/irda.h"
 
 #include <fmt/format.h>
 

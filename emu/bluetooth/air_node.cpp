@@ -1,8 +1,8 @@
 #include "emu/bluetooth/air_node.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
-#include "protocols/uart_sampling.h"
+#include "base/files/new_file.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <fmt/format.h>
 

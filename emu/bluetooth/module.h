@@ -22,7 +22,7 @@
 #include "emu/bluetooth/network.h"
 #include "emu/bluetooth/serial_out.h"
 #include "emu/bluetooth/settings.h"
-#include "protocols/lmx9820_packet.h"
+#include "protocols/radio/lmx9820_packet.h"
 
 #include <map>
 #include <string>

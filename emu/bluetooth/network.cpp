@@ -1,7 +1,7 @@
 #include "emu/bluetooth/network.h"
 
 #include "emu/air/power.h"
-#include "protocols/lmx9820_packet.h"
+#include "protocols/radio/lmx9820_packet.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "emu/bluetooth/serial_out.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 #include <array>

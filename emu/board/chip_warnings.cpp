@@ -1,6 +1,6 @@
 #include "emu/board/chip_warnings.h"
 
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 
 #include "emu/image/code_places.h"
 

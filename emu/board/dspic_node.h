@@ -13,7 +13,7 @@
 #include "emu/dspic/chip/chip.h"
 #include "emu/dspic/chip/chip_faults.h"
 #include "emu/image/image.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <memory>
 #include <optional>

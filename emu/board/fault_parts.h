@@ -1,7 +1,7 @@
 #pragma once
 // What the nodes of boards do alike about their faults. `faults` is null in a node without.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "cosim/faults/fault_json.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/chip/faults/board_faults.h"

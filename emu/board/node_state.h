@@ -1,8 +1,8 @@
 #pragma once
 // What the nodes of a main board and of a range-and-bearing board save alike, and how they go back.
 
-#include "base/archive.h"
-#include "base/checkpoint.h"
+#include "base/states/archive.h"
+#include "base/states/checkpoint.h"
 #include "cosim/core/node.h"
 #include "cosim/core/time.h"
 

@@ -2,7 +2,7 @@
 // The lines of a board's log, which is the same however grants were cut: the board is looked at at fixed
 // multiples of simulated time, and the lines of one such stretch are sorted by time and text.
 
-#include "base/node_log.h"
+#include "base/logs/node_log.h"
 #include "cosim/core/time.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "emu/camera/frame_log.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 
 #include <fmt/format.h>
 

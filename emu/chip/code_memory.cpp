@@ -1,6 +1,6 @@
 #include "emu/chip/code_memory.h"
 
-#include "base/log.h"
+#include "base/logs/log.h"
 
 #include <sys/mman.h>
 #include <unistd.h>

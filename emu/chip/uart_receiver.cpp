@@ -1,6 +1,6 @@
 #include "emu/chip/uart_receiver.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 

@@ -21,7 +21,7 @@
 #include "cosim/core/message.h"
 #include "cosim/core/message_state.h"
 #include "emu/chip/event_queue.h"
-#include "protocols/uart_line.h"
+#include "protocols/serial/uart_line.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // Reading a file, recognising its format by content, and looking symbols up.
 
 #include "base/error.h"
-#include "base/log.h"
+#include "base/logs/log.h"
 #include "base/sha256.h"
 #include "emu/image/coff.h"
 #include "emu/image/dspic_view.h"

@@ -5,7 +5,7 @@
 #include "base/fields/field.h"
 #include "cosim/core/node.h"
 #include "emu/network/network_faults.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 #include "emu/network/passage.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <cstdint>
 #include <map>

@@ -1,7 +1,7 @@
 #include "emu/network/network_faults.h"
 
 #include "base/error.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "emu/rab_board/frame_watch.h"
 
 #include "emu/rab_board/signals.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "emu/rab_board/i2c_watch.h"
 
-#include "base/node_log.h"
-#include "protocols/rab_frame.h"
+#include "base/logs/node_log.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <fmt/format.h>
 

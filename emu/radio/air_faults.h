@@ -4,7 +4,7 @@
 
 #include "cosim/faults/fault_json.h"
 #include "emu/radio/medium.h"
-#include "protocols/mesh_frame.h"
+#include "protocols/radio/mesh_frame.h"
 
 #include <cstddef>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // The radio medium as a node: one radio port for each module, at a fixed place. MAC and network layer of all
 // modules live here (mac.h, mesh.h), so that hops and acknowledgements cross no link; what a module gives and
-// gets are whole network frames (protocols/mesh_frame.h) and words of control.h.
+// gets are whole network frames (protocols/radio/mesh_frame.h) and words of control.h.
 //
 // Modules hear one another only on the same channel with the same PAN id.
 

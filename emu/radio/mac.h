@@ -13,7 +13,7 @@
 #include "emu/radio/air_faults.h"
 #include "emu/radio/control.h"
 #include "emu/radio/medium.h"
-#include "protocols/mesh_frame.h"
+#include "protocols/radio/mesh_frame.h"
 
 #include <cstdint>
 #include <deque>

@@ -12,8 +12,8 @@
 // 5. The converter (LTC3536, which raises as well as lowers) makes 3.3 V of any battery from 1.8 V on, and
 //    nothing below; its own figures for that are within 0.1 V. The on/off switch stays on meanwhile.
 
-#include "base/archive.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "emu/avr/chip/chip.h"
 #include "emu/avr/peripherals/pins.h"
 #include "emu/chip/faults/ambient_shares.h"

@@ -3,7 +3,7 @@
 #include "base/json.h"
 #include "emu/tam_avr/fuse_check.h"
 #include "emu/tam_avr/tam_json.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 

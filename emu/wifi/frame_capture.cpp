@@ -1,6 +1,6 @@
 #include "emu/wifi/frame_capture.h"
 
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 // beacons.
 
 #include "emu/wifi/medium.h"
-#include "protocols/ieee80211.h"
-#include "protocols/pcapng.h"
+#include "protocols/network/ieee80211.h"
+#include "protocols/network/pcapng.h"
 
 #include <cstdint>
 #include <fstream>

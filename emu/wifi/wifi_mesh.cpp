@@ -2,8 +2,8 @@
 // all are passed on by every station once.
 
 #include "base/error.h"
+#include "base/files/new_file.h"
 #include "base/json.h"
-#include "base/new_file.h"
 #include "emu/wifi/wifi_node.h"
 
 #include <fmt/format.h>

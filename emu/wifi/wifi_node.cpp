@@ -1,8 +1,8 @@
 #include "emu/wifi/wifi_node.h"
 
 #include "base/error.h"
+#include "base/files/new_file.h"
 #include "base/json.h"
-#include "base/new_file.h"
 
 #include <fmt/format.h>
 

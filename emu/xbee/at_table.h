@@ -5,7 +5,7 @@
 // The sizes of answers, HV and VR are what modules of this kind were seen to answer (TAM fact sheet, section
 // 9), or assumptions.
 
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_message.h"
 
 #include <cstdint>
 #include <optional>

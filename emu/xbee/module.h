@@ -25,9 +25,9 @@
 #include "emu/xbee/module_counts.h"
 #include "emu/xbee/serial_out.h"
 #include "emu/xbee/settings.h"
-#include "protocols/mesh_frame.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/mesh_frame.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 
 #include <cstdint>
 #include <deque>

@@ -1,7 +1,7 @@
 #include "emu/xbee/module_node.h"
 
 #include "base/error.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 

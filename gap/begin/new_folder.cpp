@@ -1,7 +1,7 @@
 #include "gap/begin/new_folder.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "gap/data/written.h"
 #include "gap/effects/effect.h"
 #include "gap/kinds/columns.h"

@@ -1,7 +1,7 @@
 #include "gap/data/csv.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/text/csv.h"
 #include "gap/data/problems.h"
 
 #include <fmt/format.h>

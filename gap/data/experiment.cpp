@@ -1,7 +1,7 @@
 #include "gap/data/experiment.h"
 
-#include "base/suggest.h"
-#include "base/toml_file.h"
+#include "base/text/suggest.h"
+#include "base/text/toml_file.h"
 #include "gap/data/csv.h"
 #include "gap/data/problems.h"
 #include "gap/data/wheel_units.h"

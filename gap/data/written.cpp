@@ -1,8 +1,8 @@
 #include "gap/data/written.h"
 
-#include "base/csv.h"
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
+#include "base/text/csv.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,8 +6,8 @@
 // have to do with each other is not in it.
 
 #include "base/error.h"
+#include "base/files/shipped_files.h"
 #include "base/random.h"
-#include "base/shipped_files.h"
 #include "gap/importers/importers.h"
 #include "gap/importers/text_table.h"
 

@@ -1,7 +1,7 @@
 #include "gap/importers/importers.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "gap/importers/text_table.h"
 
 #include <fmt/format.h>

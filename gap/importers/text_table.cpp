@@ -1,7 +1,7 @@
 #include "gap/importers/text_table.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/text/csv.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>

@@ -2,7 +2,7 @@
 
 #include "base/enum_names.h"
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "gap/kinds/description.h"
 
 #include <fmt/format.h>

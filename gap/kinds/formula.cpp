@@ -7,7 +7,7 @@
 
 #include "gap/kinds/formula.h"
 
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 
 #include <fmt/format.h>
 #include <muParser.h>

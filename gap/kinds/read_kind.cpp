@@ -2,8 +2,8 @@
 
 #include "base/enum_names.h"
 #include "base/error.h"
-#include "base/suggest.h"
-#include "base/toml_file.h"
+#include "base/text/suggest.h"
+#include "base/text/toml_file.h"
 #include "gap/kinds/legal_values.h"
 #include "physics/description/parameters.h"
 #include "scenarios/values/reader.h"

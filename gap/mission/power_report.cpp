@@ -1,6 +1,6 @@
 // The same as a table, rows and a picture.
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 #include "gap/mission/power.h"
 #include "gap/stats/rate.h"
 

@@ -1,7 +1,7 @@
 #include "gap/mission/runs.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/text/csv.h"
 #include "gap/mission/track.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "gap/mission/track.h"
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/quantile.h"
+#include "base/text/csv.h"
 
 #include <fmt/format.h>
 

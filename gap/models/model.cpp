@@ -1,7 +1,7 @@
 #include "gap/models/model.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "physics/description/parameters.h"
 
 #include <fmt/format.h>

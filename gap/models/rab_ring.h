@@ -1,7 +1,7 @@
 #pragma once
 // What one range-and-bearing board reads of another's frame, ring and medium included: light by the
 // simulator's own coupling (physics/ir/ir_coupling), strength and bearing by the formulas of the board's
-// firmware (protocols/rab_reading, here without its rounding).
+// firmware (protocols/infrared/rab_reading, here without its rounding).
 //
 // Deviations: 1. boards stand alone; nothing shades or mirrors. 2. Spreads of parts count as noise of single
 // messages; what boards that a run has for itself do to all its messages is drawn beside it. 3. A receiver at

@@ -4,7 +4,7 @@
 
 #include "gap/overlay/overlay_parts.h"
 
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-#include "base/chart.h"
-#include "base/svg.h"
+#include "base/pages/chart.h"
+#include "base/pages/svg.h"
 #include "gap/findings/quantities.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"

@@ -1,6 +1,6 @@
 #include "gap/report/sections.h"
 
-#include "base/svg.h"
+#include "base/pages/svg.h"
 #include "gap/findings/quantities.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "gap/report/pictures.h"
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 #include "gap/residuals/main_covariates.h"
 #include "gap/residuals/residual_structure.h"
 #include "gap/stats/bootstrap.h"

@@ -1,7 +1,7 @@
 // Posterior-predictive checks: a row of panels for each observable and model.
 
-#include "base/chart.h"
-#include "base/svg.h"
+#include "base/pages/chart.h"
+#include "base/pages/svg.h"
 #include "gap/report/pictures.h"
 #include "gap/report/report.h"
 #include "gap/report/sections.h"

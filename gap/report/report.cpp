@@ -1,6 +1,6 @@
 #include "gap/report/report.h"
 
-#include "base/svg.h"
+#include "base/pages/svg.h"
 #include "gap/findings/quantities.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"

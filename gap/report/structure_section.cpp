@@ -1,6 +1,6 @@
 // Noise floor and structure tests of every observable.
 
-#include "base/svg.h"
+#include "base/pages/svg.h"
 #include "gap/findings/quantities.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"

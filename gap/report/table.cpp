@@ -1,6 +1,6 @@
 #include "gap/report/table.h"
 
-#include "base/svg.h"
+#include "base/pages/svg.h"
 #include "gap/stats/profile.h"
 
 #include <fmt/format.h>

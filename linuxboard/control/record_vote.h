@@ -2,7 +2,7 @@
 // One sensor record out of several that came within a control step: each value is the median of theirs, so
 // that one garbled record, which has no check to show it, is outvoted.
 
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 
 #include <span>
 

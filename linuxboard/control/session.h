@@ -1,6 +1,6 @@
 #pragma once
-// One session with the robot's PIC over the serial records of protocols/epuck_serial.h, with recovery the
-// original programs lack: lost, late, repeated or garbled bytes, and a restart of either side.
+// One session with the robot's PIC over the serial records of protocols/serial/epuck_serial.h, with recovery
+// the original programs lack: lost, late, repeated or garbled bytes, and a restart of either side.
 //
 // The records have no header and no check, so all rests on three observations about the PIC (fact sheet 1.4):
 // it answers as soon as, and only when, it has the last byte it waits for; it takes any byte as wake-up and
@@ -16,7 +16,7 @@
 //    once, so the byte it answers to is the last of its record, and both sides are aligned.
 
 #include "linuxboard/control/devices/transport.h"
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 
 #include <functional>
 #include <optional>

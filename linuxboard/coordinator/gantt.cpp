@@ -1,7 +1,7 @@
 #include "linuxboard/coordinator/gantt.h"
 
-#include "base/chart.h"
-#include "base/svg.h"
+#include "base/pages/chart.h"
+#include "base/pages/svg.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // The XBee module at the serial port, as a host sees it: API frames, escaped (AP = 2), out and in.
 
 #include "linuxboard/control/devices/transport.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,8 +1,8 @@
 #include "linuxboard/coordinator/parameters.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
-#include "base/toml_file.h"
+#include "base/text/suggest.h"
+#include "base/text/toml_file.h"
 
 #include <algorithm>
 #include <charconv>

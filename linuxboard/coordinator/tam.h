@@ -3,7 +3,7 @@
 // the TAM has followed them; who sends is the Coordinator (coordinator.h).
 
 #include "linuxboard/coordinator/color.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_message.h"
 
 #include <cstdint>
 #include <functional>

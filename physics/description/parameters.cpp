@@ -2,7 +2,7 @@
 
 #include "physics/description/parameters.h"
 
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
 // Can what is planned happen? Every refusal names the event, and where the user wrote it.
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "physics/description/booth.h"
 #include "physics/description/plan.h"
 #include "physics/description/robot_parameters.h"
 #include "physics/events/new_thing.h"
 #include "physics/robot/tuning.h"
-#include "protocols/rc5.h"
+#include "protocols/infrared/rc5.h"
 
 #include <fmt/format.h>
 

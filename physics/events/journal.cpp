@@ -1,7 +1,7 @@
 #include "physics/events/journal.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 
 #include <fmt/format.h>
 

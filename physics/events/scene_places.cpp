@@ -1,6 +1,6 @@
 // Where things are, and where they can be.
 
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "physics/description/booth.h"
 #include "physics/events/scene.h"
 

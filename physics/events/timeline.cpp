@@ -1,7 +1,7 @@
 #include "physics/events/timeline.h"
 
 #include "base/json.h"
-#include "protocols/rc5.h"
+#include "protocols/infrared/rc5.h"
 
 #include <fmt/format.h>
 

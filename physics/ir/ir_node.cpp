@@ -1,8 +1,8 @@
 #include "physics/ir/ir_node.h"
 
-#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/json.h"
+#include "base/states/checkpoint.h"
 #include "physics/description/robot_parameters.h"
 #include "physics/ir/ir_faults.h"
 #include "physics/ir/ir_frames.h"

@@ -1,6 +1,6 @@
 #include "physics/ir/virtual_senders.h"
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <algorithm>
 #include <string>

@@ -1,7 +1,7 @@
 #include "physics/ircom/faults.h"
 
 #include "base/error.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "physics/ircom/ircom_node.h"
 
-#include "base/checkpoint.h"
 #include "base/error.h"
 #include "base/json.h"
+#include "base/states/checkpoint.h"
 #include "physics/ircom/comparator.h"
 #include "physics/ircom/faults.h"
 #include "physics/ircom/words.h"

@@ -3,13 +3,13 @@
 //
 // File (CSV), one row per word and device that its light reached, or one with an empty receiver, in the order
 // in which words ended: t_s and end_s first and last edge; sender; word (hexadecimal, empty if it cannot be
-// read); fault (protocols/ircom.h) or "none"; receiver; counts: the brightest that the word was there;
-// overlap: 1 if another's word that reached the receiver fell into the same time; receiver_sending: 1 if the
-// receiver itself sent then. Light of fewer than twenty edges is no word: a robot measures proximity.
+// read); fault (protocols/infrared/ircom.h) or "none"; receiver; counts: the brightest that the word was
+// there; overlap: 1 if another's word that reached the receiver fell into the same time; receiver_sending: 1
+// if the receiver itself sent then. Light of fewer than twenty edges is no word: a robot measures proximity.
 
 #include "physics/ircom/medium.h"
 #include "physics/world/recorder.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 
 #include <memory>
 #include <string>

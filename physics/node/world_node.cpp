@@ -10,7 +10,7 @@
 #include "physics/world/pose_signals.h"
 #include "physics/world/recorder.h"
 #include "physics/world/world_log.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <cmath>
 #include <map>

@@ -1,8 +1,8 @@
 #include "physics/render/arena_file.h"
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "physics/render/path_file.h"
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "physics/render/result_rows.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "physics/render/svg_canvas.h"
 
-#include "base/svg.h"
+#include "base/pages/svg.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "physics/render/trajectory_svg.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 #include "physics/render/run_picture.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "physics/world/booth_record.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/text/csv.h"
 
 #include <fmt/format.h>
 

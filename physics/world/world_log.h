@@ -2,7 +2,7 @@
 // The log of the world: what stands in it, who touches what and for how long, steps lost, batteries low,
 // beams of booths interrupted by more than half.
 
-#include "base/node_log.h"
+#include "base/logs/node_log.h"
 #include "physics/world/world_model.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 // What teams of several sizes heard, as table, CSV and picture.
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 #include "reproductions/density/density.h"
 
 #include <fmt/format.h>

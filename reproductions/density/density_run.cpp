@@ -1,8 +1,8 @@
 // A run of a team that stands: its scenario, and what became of its frames.
 
 #include "base/error.h"
-#include "base/shipped_files.h"
-#include "base/text_file.h"
+#include "base/files/shipped_files.h"
+#include "base/files/text_file.h"
 #include "reproductions/density/density.h"
 #include "reproductions/runs/scratch_run.h"
 #include "scenarios/tables/world_tables.h"

@@ -1,8 +1,8 @@
 #include "reproductions/rab/picture.h"
 
-#include "base/chart.h"
-#include "base/svg.h"
-#include "protocols/rab_reading.h"
+#include "base/pages/chart.h"
+#include "base/pages/svg.h"
+#include "protocols/infrared/rab_reading.h"
 
 #include <fmt/format.h>
 

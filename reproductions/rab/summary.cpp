@@ -1,7 +1,7 @@
 #include "reproductions/rab/summary.h"
 
 #include "base/quantile.h"
-#include "protocols/rab_reading.h"
+#include "protocols/infrared/rab_reading.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "reproductions/runs/scratch_run.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "run/run_scenario.h"
 
 #include <system_error>

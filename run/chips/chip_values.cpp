@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "debug/core_register.h"
 #include "emu/image/symbol_sizes.h"
 #include "run/chips/image_names.h"

@@ -1,7 +1,7 @@
 #include "run/chips/profiled_node.h"
 
 #include "base/json.h"
-#include "debug/profile.h"
+#include "debug/profile/profile.h"
 #include "emu/image/symbol_sizes.h"
 #include "run/chips/board_around.h"
 #include "run/chips/board_chip.h"

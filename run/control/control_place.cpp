@@ -1,8 +1,8 @@
 #include "run/control/control_place.h"
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
 #include "run/control/control_socket.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 
 #include "cosim/core/clock.h"
 #include "cosim/core/stateful_node.h"
-#include "debug/gdb_session.h"
+#include "debug/gdb/gdb_session.h"
 
 #include <functional>
 #include <memory>

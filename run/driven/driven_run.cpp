@@ -1,7 +1,7 @@
 #include "run/driven/driven_run.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "base/version/version.h"
 #include "cosim/faults/spec/flash.h"
 #include "cosim/faults/spec/typed_bytes.h"

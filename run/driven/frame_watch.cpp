@@ -1,7 +1,7 @@
 #include "run/driven/frame_watch.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "cosim/trace/trace_csv.h"
 #include "cosim/trace/trace_row.h"
 

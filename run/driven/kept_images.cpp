@@ -1,8 +1,8 @@
 #include "run/driven/kept_images.h"
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/sha256.h"
-#include "base/text_file.h"
 #include "emu/avr/devices/device.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/image/avr_image.h"

@@ -1,6 +1,6 @@
 #include "run/expectations/judge_frames.h"
 
-#include "traces/decode.h"
+#include "traces/decoders/decode.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "run/expectations/plan_expectations.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
-#include "traces/decode.h"
+#include "base/text/suggest.h"
+#include "traces/decoders/decode.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "run/expectations/test_report.h"
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/plain_text.h"
-#include "base/text_file.h"
 #include "run/expectations/judge_expectations.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "run/factory/node_process.h"
 
-#include "base/log.h"
+#include "base/logs/log.h"
 #include "cosim/core/process_name.h"
 #include "cosim/remote/processes/node_server.h"
 #include "cosim/remote/protocol.h"

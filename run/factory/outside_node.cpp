@@ -1,12 +1,12 @@
 #include "run/factory/outside_node.h"
 
 #include "base/error.h"
+#include "base/files/new_file.h"
 #include "base/json.h"
-#include "base/new_file.h"
 #include "ends/script_end.h"
 #include "ends/scripts.h"
 #include "ends/text_input.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <fmt/format.h>
 

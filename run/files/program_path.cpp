@@ -1,6 +1,6 @@
 #include "run/files/program_path.h"
 
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 
 #include <cstdlib>
 #include <sstream>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/plain_text.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "scenarios/reader/events/event_tables.h"
 
 #include <fmt/format.h>

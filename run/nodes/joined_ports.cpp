@@ -1,7 +1,7 @@
 #include "run/nodes/joined_ports.h"
 
 #include "base/error.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 #include "run/control/control_place.h"
 #include "scenarios/tables/network_tables.h"
 

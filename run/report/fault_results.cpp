@@ -1,8 +1,8 @@
 #include "run/report/fault_results.h"
 
 #include "base/error.h"
+#include "base/files/new_file.h"
 #include "base/json.h"
-#include "base/new_file.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_facts.h"
 #include "cosim/trace/trace_row.h"

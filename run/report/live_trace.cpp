@@ -1,7 +1,7 @@
 #include "run/report/live_trace.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 #include "cosim/trace/trace_csv.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 // a file. The run waits for a slow reader; one that goes away ends the stream, not the run.
 
 #include "cosim/trace/trace.h"
-#include "traces/pcapng_stream.h"
+#include "traces/formats/pcapng_stream.h"
 
 #include <csignal>
 #include <memory>

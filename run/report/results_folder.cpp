@@ -1,7 +1,7 @@
 #include "run/report/results_folder.h"
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
+#include "base/files/claimed_folder.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 namespace puckloop::tools {
 
-/// The lock file of a run's results, which is the folder's mark as well (base/claimed_folder.h).
+/// The lock file of a run's results, which is the folder's mark as well (base/files/claimed_folder.h).
 inline constexpr const char* kRunMark = ".puckloop";
 
 class ResultsFolder {

@@ -1,6 +1,6 @@
 #include "run/report/run_log.h"
 
-#include "base/log.h"
+#include "base/logs/log.h"
 
 #include <algorithm>
 

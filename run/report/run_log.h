@@ -1,6 +1,6 @@
 #pragma once
-// What a run writes in the host's log (base/log.h): what was started where, how fast it goes, why it ended,
-// and how long each phase took.
+// What a run writes in the host's log (base/logs/log.h): what was started where, how fast it goes, why it
+// ended, and how long each phase took.
 
 #include "cosim/conductor.h"
 #include "run/description/run_request.h"

@@ -1,7 +1,7 @@
 #include "run/report/supply_resets.h"
 
 #include "base/json.h"
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 // Deviations: 1. everything stands upright on the floor. 2. A light's intensity is taken as a lamp's, as it
 // is.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "scenarios/argos/xml_file.h"
 
 #include <filesystem>

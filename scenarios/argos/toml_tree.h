@@ -1,7 +1,7 @@
 #pragma once
 // A scenario's tables as they are made here, with the lines of what they were made from, and as text.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "scenarios/tables/allowed_failures.h"
 
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "emu/wifi/phy.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 #include "scenarios/tables/linux_keys.h"
 #include "scenarios/values/field_table.h"
 

@@ -2,7 +2,7 @@
 
 #include "emu/xbee/at_table.h"
 
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_message.h"
 #include "scenarios/tables/linux_keys.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 // The [[tam]] tables of a scenario.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "scenarios/description/scenario.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 #include "scenarios/tables/world_tables.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "physics/description/parameters.h"
 #include "scenarios/tables/thing_tables.h"
 

@@ -1,6 +1,6 @@
 #include "scenarios/values/image_key.h"
 
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "scenarios/values/reader.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // Reads one table of a scenario key by key. Keys that nobody asked for are errors, with the nearest known key
 // named.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "scenarios/values/quantity.h"
 
 #include <cstdint>

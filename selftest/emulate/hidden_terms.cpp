@@ -1,7 +1,7 @@
 #include "selftest/emulate/hidden_terms.h"
 
+#include "base/files/text_file.h"
 #include "base/random.h"
-#include "base/text_file.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/reading/read_experiment.h"
 #include "gap/stats/rate.h"

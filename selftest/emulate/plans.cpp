@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "physics/description/parameters.h"
-#include "selftest/design_motion.h"
+#include "selftest/benches/design_motion.h"
 #include "selftest/emulate/plans_sensors.h"
 #include "selftest/emulate/wave_floor.h"
 

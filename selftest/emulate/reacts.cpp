@@ -2,7 +2,7 @@
 
 #include "base/quantile.h"
 #include "physics/description/parameters.h"
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 #include "selftest/emulate/plans.h"
 #include "selftest/emulate/reacts_sensors.h"
 #include "selftest/emulate/surroundings.h"

@@ -1,9 +1,9 @@
 #include "selftest/emulate/record_serial.h"
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/random.h"
-#include "protocols/epuck_serial.h"
+#include "base/text/csv.h"
+#include "protocols/serial/epuck_serial.h"
 
 #include <fstream>
 

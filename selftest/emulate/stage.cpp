@@ -1,8 +1,8 @@
 #include "selftest/emulate/stage.h"
 
-#include "base/csv.h"
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
+#include "base/text/csv.h"
 #include "gap/data/written.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"

@@ -1,5 +1,5 @@
-#include "base/chart.h"
-#include "base/svg.h"
+#include "base/pages/chart.h"
+#include "base/pages/svg.h"
 #include "selftest/grammar/curves.h"
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #include "selftest/grammar/drawn_case.h"
 
 #include "gap/stats/exchange.h"
+#include "selftest/benches/rig.h"
 #include "selftest/case_list.h"
 #include "selftest/grammar/laboratory.h"
 #include "selftest/grammar/near_misses.h"
-#include "selftest/rig.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,8 +3,8 @@
 // in the catalogue. Drawn without regard to how the analysis works; the seed is new at each full run and
 // recorded.
 
+#include "selftest/benches/hidden_case.h"
 #include "selftest/grammar/site.h"
-#include "selftest/hidden_case.h"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 #include "selftest/grammar/noisy_inputs.h"
 
+#include "selftest/benches/rig.h"
 #include "selftest/case_list.h"
 #include "selftest/grammar/laboratory.h"
-#include "selftest/rig.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Idle-loop elision: programs with and without it, everything compared.
 
-#include "base/archive.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "tests/avr/random_loops.h"
 #include "tests/avr/rig.h"
 

@@ -1,7 +1,7 @@
 // What was measured on parts, and published: absolute values, each by a small program of ours. The data, with
 // sources, are in measured_silicon.csv; docs/measured_silicon.md has the table.
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "tests/avr/rig.h"
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 // A chip's state: saved at any time, loaded into another chip, it goes on as the original; damaged, it is
 // refused.
 
-#include "base/archive.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "tests/avr/rig.h"
 
 #include <catch2/catch.hpp>

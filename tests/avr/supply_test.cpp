@@ -2,8 +2,8 @@
 // and what its program finds. Source: data sheet 8272, "System Clock" (tables of start-up times), "System
 // Control and Reset", "System and Reset Characteristics".
 
-#include "base/archive.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "tests/avr/rig.h"
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 // Translated code against the interpreter in lockstep: random words, random waiting loops, every fast path on
 // and off, cut at random instants, with interrupts and writes to the program meanwhile: the same saved state.
 
-#include "base/archive.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "emu/avr/isa/isa.h"
 #include "emu/chip/translation_switch.h"
 #include "tests/avr/random_loops.h"

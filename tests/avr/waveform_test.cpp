@@ -1,7 +1,7 @@
 // The timers' arithmetic against a counter that ticks.
 
 #include "base/random.h"
-#include "emu/avr/peripherals/waveform.h"
+#include "emu/avr/peripherals/timing/waveform.h"
 
 #include <catch2/catch.hpp>
 

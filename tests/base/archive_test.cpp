@@ -1,6 +1,6 @@
 // Saved state: what goes in comes out, and nothing that is damaged gets in.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 
 #include "base/random.h"
 

@@ -1,7 +1,7 @@
 // Cells, numbers and columns of tables as text.
 
-#include "base/csv.h"
 #include "base/random.h"
+#include "base/text/csv.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "base/node_log.h"
+#include "base/logs/node_log.h"
 
 #include "base/error.h"
 #include "tests/kit/files.h"

@@ -1,12 +1,12 @@
 // Quantiles, and text files that are written whole.
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/log.h"
-#include "base/new_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/new_file.h"
+#include "base/files/text_file.h"
+#include "base/logs/log.h"
 #include "base/plain_text.h"
 #include "base/quantile.h"
-#include "base/text_file.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>

@@ -4,8 +4,8 @@
 
 #include "base/json.h"
 #include "emu/bluetooth/air_node.h"
-#include "protocols/lmx9820_packet.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/radio/lmx9820_packet.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // crash the reader nor keep it from the next packet.
 
 #include "base/random.h"
-#include "protocols/lmx9820_packet.h"
+#include "protocols/radio/lmx9820_packet.h"
 
 #include <catch2/catch.hpp>
 

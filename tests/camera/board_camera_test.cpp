@@ -1,7 +1,7 @@
 // The camera on the main board: a program samples it as the e-puck library does, VSYNC and HREF counted by
 // timers 5 and 4, the data port read every eight cycles from the fifteenth behind the edge on.
 
-#include "base/checkpoint.h"
+#include "base/states/checkpoint.h"
 #include "emu/pic/pic_node.h"
 #include "tests/camera/random_picture.h"
 #include "tests/kit/node_under_test.h"

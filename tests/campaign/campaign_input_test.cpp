@@ -1,7 +1,7 @@
 // What a user may get wrong: one line, status 2, before the first run.
 
 #include "tests/campaign/small_campaign.h"
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 // A Slurm cluster of this machine alone, in a folder of its own: munge, controller and one node.
 
-#include "tests/end_to_end/process.h"
+#include "tests/end_to_end/kit/process.h"
 
 #include <filesystem>
 #include <memory>

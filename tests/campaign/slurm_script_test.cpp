@@ -2,7 +2,7 @@
 // three shell scripts in place of Slurm's commands: what Slurm does of itself is slurm_test's.
 
 #include "tests/campaign/small_campaign.h"
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

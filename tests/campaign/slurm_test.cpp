@@ -3,7 +3,7 @@
 #include "campaigns/engine/store.h"
 #include "tests/campaign/slurm_cluster.h"
 #include "tests/campaign/small_campaign.h"
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 // A campaign of a few short cases, for tests of how it is carried out.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <filesystem>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "tests/can/wire_bench.h"
 
-#include "protocols/can_reader.h"
+#include "protocols/can/can_reader.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,7 +3,7 @@
 // stuffing by search. '0' is dominant.
 
 #include "base/random.h"
-#include "protocols/can_frame.h"
+#include "protocols/can/can_frame.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "linuxboard/coordinator/event_log.h"
 #include "linuxboard/shim/node/linux_node.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 #include "tests/coordinator/simulated_mesh.h"
 #include "tests/kit/files.h"
 #include "tests/kit/scratch.h"

@@ -3,8 +3,8 @@
 // its time. Written from the fact sheet of the TAM, not from the coordinator.
 
 #include "base/random.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 
 #include <cstdint>
 #include <functional>

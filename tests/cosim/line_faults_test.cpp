@@ -2,7 +2,7 @@
 
 #include "fault_line.h"
 
-#include "protocols/uart_line.h"
+#include "protocols/serial/uart_line.h"
 
 #include <catch2/catch.hpp>
 

@@ -6,7 +6,7 @@
 #include "cosim/trace/trace_hash.h"
 #include "cosim/trace/trace_merger.h"
 #include "cosim/trace/trace_stats.h"
-#include "protocols/irda.h"
+#include "protocols/serial/irda.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

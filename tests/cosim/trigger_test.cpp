@@ -1,8 +1,8 @@
 // Which candidates suffer a fault, and the evidence of it.
 
-#include "base/archive.h"
 #include "base/error.h"
 #include "base/json.h"
+#include "base/states/archive.h"
 #include "cosim/faults/evidence.h"
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/trigger.h"

@@ -2,7 +2,7 @@
 
 #include "fault_line.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include "base/error.h"
 

@@ -1,6 +1,6 @@
 #include "tests/debug/gdb_client.h"
 
-#include "debug/rsp_packet.h"
+#include "debug/gdb/rsp_packet.h"
 
 #include <catch2/catch.hpp>
 

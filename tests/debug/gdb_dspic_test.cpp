@@ -1,7 +1,7 @@
 // A debugger's packets at a dsPIC, through the built program: GDB does not know the chip, so the debugger is
 // our own.
 
-#include "debug/rsp_packet.h"
+#include "debug/gdb/rsp_packet.h"
 #include "emu/dspic/devices/device.h"
 #include "tests/debug/gdb_client.h"
 #include "tests/exec/command.h"

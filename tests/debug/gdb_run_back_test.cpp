@@ -3,8 +3,8 @@
 
 #include "tests/debug/counting_program.h"
 #include "tests/debug/gdb_client.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 #include "tests/exec/command.h"
 
 #include "emu/image/intel_hex.h"

@@ -1,6 +1,6 @@
 // Packets of the remote serial protocol, whole, cut and damaged.
 
-#include "debug/rsp_packet.h"
+#include "debug/gdb/rsp_packet.h"
 
 #include <catch2/catch.hpp>
 

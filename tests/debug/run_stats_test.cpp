@@ -4,8 +4,8 @@
 #include "base/random.h"
 #include "emu/dspic/devices/device.h"
 #include "tests/debug/drawn_reads.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/chip/chip.h"
 
-#include "tests/dspic/master_codec.h"
+#include "tests/dspic/peripherals/master_codec.h"
 
 #include <array>
 #include <map>

@@ -1,7 +1,7 @@
 // What timing diagrams and errata of the dsPICs give as absolute values, each by a small program of ours. The
 // data, with sources, are in measured_silicon.csv; docs/measured_silicon.md has the table.
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "tests/dspic/chip30_bench.h"
 
 #include <catch2/catch.hpp>

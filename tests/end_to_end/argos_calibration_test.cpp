@@ -2,7 +2,7 @@
 // an operator does between its phases is done by the scenario, and it runs to its end and writes its files.
 // The firmware is the project's own; with the original one the same takes 42 s more of simulated time.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 // as laboratories start it: from scripts, through pipelines, by Python. Its session is whole, down to the
 // last 'R'.
 
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

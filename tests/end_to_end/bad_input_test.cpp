@@ -1,7 +1,7 @@
 // Files and options that no run can be made of: status 2, one line that states which and why, nothing
 // touched.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

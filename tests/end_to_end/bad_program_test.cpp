@@ -1,6 +1,6 @@
 // Linux programs that cannot run, end early, crash or hang.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // under faults. The image is the library's demoGCtronic, whose letters g, A and b (selector 3) ask for turn
 // rates, accelerations and the battery.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

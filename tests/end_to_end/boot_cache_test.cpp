@@ -1,8 +1,8 @@
 // Boots that are skipped: the run is the same in every byte, whatever the cache holds.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

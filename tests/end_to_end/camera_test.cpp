@@ -1,7 +1,7 @@
 // Cameras in a run: what programs see is the same in every placement, tools run unmodified.
 
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // The other commands as a user meets them first: each does its work, and reports wrong use in one line.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // demoGCtronic in a scene: it turns to the lightest thing its camera sees, and to each clap it hears. Images
 // come from PUCKLOOP_IMAGES; without them those cases say so and pass.
 
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

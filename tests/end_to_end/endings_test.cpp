@@ -1,6 +1,6 @@
 // Runs that are ended from outside: signals, lost processes, a full disk. What was recorded is kept.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // calibrations. Images come from PUCKLOOP_IMAGES, ARGoS' calibration program from PUCKLOOP_ARGOS; without
 // them those cases say so and pass.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // scenarios/hello.toml: what a run leaves behind, and that it is the same in every placement and under load.
 
-#include "tests/end_to_end/load.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/load.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // The host's log: -v, --log-level, --log-file.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

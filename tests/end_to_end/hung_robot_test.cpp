@@ -1,6 +1,6 @@
 // A robot that hangs looks hung: on the terminal, in report.json and in the exit status.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 #include "tests/kit/dspic_pieces.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // the victim's name, and leaves nothing but what it recorded. PUCKLOOP_KILLS sets how many (12).
 
 #include "base/random.h"
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

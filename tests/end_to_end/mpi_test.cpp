@@ -1,7 +1,7 @@
 // puckloop-mpi under mpirun: the same run on several ranks of one machine.
 
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // Faults of boards and of the light between them in whole runs of the project's firmware: what they do, the
 // evidence, and that all of it is the same in one process and in many.
 
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

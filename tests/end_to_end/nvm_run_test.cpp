@@ -1,6 +1,6 @@
 // Boards whose flash and EEPROM last from run to run: [robot.pic] nvm, [robot.rab] nvm.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 #include "tests/kit/dspic_pieces.h"
 
 #include <catch2/catch.hpp>

@@ -2,9 +2,9 @@
 // (PUCKLOOP_IMAGES) and by ARGoS's real-robot program (PUCKLOOP_ARGOS: a folder with argos_epuck and
 // avoid.argos). PUCKLOOP_REPEATS sets how often the latter is repeated (2).
 
-#include "tests/end_to_end/load.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/load.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // The end of a run as its programs see it: a signal, time to react, then SIGKILL.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // What ps and top show of a run.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

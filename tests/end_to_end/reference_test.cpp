@@ -7,7 +7,7 @@
 #include "emu/rab_board/signals.h"
 #include "emu/tam_avr/signals.h"
 #include "physics/description/parameters.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

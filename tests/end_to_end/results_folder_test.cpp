@@ -1,6 +1,6 @@
 // The results folder: one run at a time, and nothing left of the run before.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 
 #include <catch2/catch.hpp>
 

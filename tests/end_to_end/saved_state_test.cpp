@@ -1,8 +1,8 @@
 // --save-state and --from-state: a run from a state is the same run; a state that does not fit is refused.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // Robots that hear each other in a run: what one plays through its codec, others read at their microphones.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 #include "tests/kit/dspic_pieces.h"
 #include "tests/kit/sound_player.h"
 

@@ -1,8 +1,8 @@
 // The original firmware (PUCKLOOP_IMAGES), which listens after 39.5 s, started from the cache and from a
 // state.
 
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -5,8 +5,8 @@
 #include "cosim/conductor.h"
 #include "run/factory/node_factory.h"
 #include "run/setup.h"
-#include "tests/end_to_end/load.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/load.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <gnu/libc-version.h>

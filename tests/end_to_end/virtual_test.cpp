@@ -1,8 +1,8 @@
 // Things that only robots sense, in whole runs: firmware and programs feel them, and nothing else does.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // A control program as people start it: from a script, behind env and timeout, into tee, from Python.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
 
 #include <catch2/catch.hpp>
 

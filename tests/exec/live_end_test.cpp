@@ -4,7 +4,7 @@
 #include "ends/pty_speed.h"
 
 #include "emu/image/image.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 #include "run/factory/outside_node.h"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // The project's own e-puck firmware on the emulated board: firmware/epuck/README.md, line by line.
 
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 #include "tests/exec/rig.h"
 
 #include <catch2/catch.hpp>

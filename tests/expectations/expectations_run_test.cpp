@@ -1,7 +1,7 @@
 // Runs that are judged by what their scenario expects.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

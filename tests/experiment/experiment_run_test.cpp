@@ -2,8 +2,8 @@
 // score of a run in every placement, and a run of the ARGoS file with a mission from elsewhere.
 
 #include "campaigns/experiment/experiment_store.h"
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/process.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/process.h"
 #include "tests/experiment/small_experiment.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 // An experiment of a few short runs with the shipped swarm, for tests of how it is carried out.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <filesystem>
 #include <string>

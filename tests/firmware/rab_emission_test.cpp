@@ -1,7 +1,7 @@
 // The project's own range-and-bearing firmware: boot, registers and what it sends; firmware/rab/README.md
 // line by line.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/firmware/rab_bench.h"
 
 #include <catch2/catch.hpp>

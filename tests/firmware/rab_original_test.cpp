@@ -2,7 +2,7 @@
 // the figures of firmware/rab/README.md. The original's half needs its image in PUCKLOOP_IMAGES.
 
 #include "base/random.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/firmware/rab_bench.h"
 
 #include <catch2/catch.hpp>

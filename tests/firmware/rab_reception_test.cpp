@@ -1,7 +1,7 @@
 // The project's own range-and-bearing firmware: what it receives, through noise, errors, polls and
 // neighbours.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/firmware/rab_bench.h"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // The project's own range-and-bearing firmware: its two UARTs.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/firmware/rab_bench.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 // USART1 of an ATmega1284P at 16 MHz without the processor, with a clock that may be off.
 
-#include "emu/avr/peripherals/usart.h"
+#include "emu/avr/peripherals/serial/usart.h"
 #include "tests/framing/uart_line.h"
 
 #include <vector>

@@ -3,7 +3,7 @@
 // board's, with a clock that may be off.
 
 #include "emu/dspic/layouts/layout.h"
-#include "tests/dspic/peripheral_bench.h"
+#include "tests/dspic/peripherals/peripheral_bench.h"
 #include "tests/framing/uart_line.h"
 
 namespace puckloop::framing {

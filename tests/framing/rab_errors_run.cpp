@@ -1,7 +1,7 @@
 #include "tests/framing/rab_errors_run.h"
 
 #include "base/random.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // always, the original's where its image is at hand. And chips whose edges jitter or whose rate is off.
 
 #include "base/random.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/framing/rab_errors_run.h"
 #include "tests/framing/table.h"
 

@@ -3,7 +3,7 @@
 // ARGoS' unmodified program with the original firmware, which have no way back.
 
 #include "base/random.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 #include "tests/framing/record_traffic.h"
 #include "tests/framing/table.h"
 

@@ -3,7 +3,7 @@
 // for longer than one at a speed that was not commanded.
 
 #include "base/random.h"
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 #include "tests/framing/record_run.h"
 #include "tests/framing/table.h"
 

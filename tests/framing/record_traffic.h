@@ -2,7 +2,7 @@
 // What went over the line between program and PIC in a whole run, from its trace: where the bytes of a record
 // were, and how the two sides ended up.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <string>
 #include <vector>

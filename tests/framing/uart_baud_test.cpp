@@ -3,7 +3,7 @@
 // reference receiver; the edges at which errors begin with theory.
 
 #include "base/random.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 #include "tests/framing/table.h"
 #include "tests/framing/uart_chips.h"
 

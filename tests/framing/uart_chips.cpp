@@ -1,7 +1,7 @@
 #include "tests/framing/uart_chips.h"
 
 #include "emu/dspic/layouts/layout.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 #include "tests/framing/avr_usart_bench.h"
 #include "tests/framing/dspic_uart_bench.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "cosim/faults/faults.h"
-#include "protocols/uart_line.h"
+#include "protocols/serial/uart_line.h"
 #include "tests/framing/uart_chips.h"
 #include "tests/framing/uart_wave.h"
 

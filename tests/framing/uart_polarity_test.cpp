@@ -4,7 +4,7 @@
 // seventh sixteenth on).
 
 #include "base/random.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 #include "tests/framing/dspic_uart_bench.h"
 #include "tests/framing/uart_wave.h"
 

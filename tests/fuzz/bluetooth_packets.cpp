@@ -1,6 +1,6 @@
 // Packets of the LMX9820 Bluetooth module. One that is taken comes back as it was sent.
 
-#include "protocols/lmx9820_packet.h"
+#include "protocols/radio/lmx9820_packet.h"
 #include "tests/fuzz/target.h"
 
 void puckloop::fuzz::run_input(Input input) {

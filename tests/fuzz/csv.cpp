@@ -1,6 +1,6 @@
 // Lines of tables of numbers, with each separator.
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "tests/fuzz/target.h"
 
 void puckloop::fuzz::run_input(Input input) {

@@ -1,7 +1,7 @@
 // Questions to a board's resolver, and its answers.
 
 #include "linuxboard/shim/network/name_server.h"
-#include "protocols/dns_message.h"
+#include "protocols/network/dns_message.h"
 #include "tests/fuzz/target.h"
 
 #include <string>

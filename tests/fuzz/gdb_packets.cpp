@@ -1,6 +1,6 @@
 // Packets of GDB's remote serial protocol, and the numbers in them.
 
-#include "debug/rsp_packet.h"
+#include "debug/gdb/rsp_packet.h"
 #include "tests/fuzz/target.h"
 
 void puckloop::fuzz::run_input(Input input) {

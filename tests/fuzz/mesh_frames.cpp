@@ -1,6 +1,6 @@
 // Frames of the radio mesh between XBee modules.
 
-#include "protocols/mesh_frame.h"
+#include "protocols/radio/mesh_frame.h"
 #include "tests/fuzz/target.h"
 
 #include <vector>

@@ -1,8 +1,8 @@
 // API frames of the XBee module, both modes, and their meaning. A frame that is taken comes back as it was
 // sent.
 
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 #include "tests/fuzz/target.h"
 
 void puckloop::fuzz::run_input(Input input) {

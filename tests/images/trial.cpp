@@ -1,6 +1,6 @@
 #include "tests/images/trial.h"
 
-#include "protocols/rc5.h"
+#include "protocols/infrared/rc5.h"
 
 #include <fmt/format.h>
 

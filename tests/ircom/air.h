@@ -4,8 +4,8 @@
 
 #include "emu/pic/pic_node.h"
 #include "physics/ircom/ircom_node.h"
-#include "protocols/epuck_serial.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
+#include "protocols/serial/epuck_serial.h"
 #include "tests/ircom/worlds.h"
 #include "tests/tam_board/booth.h"
 

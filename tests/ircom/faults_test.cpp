@@ -7,7 +7,7 @@
 #include "cosim/faults/fault_json.h"
 #include "cosim/faults/kinds/kind_table.h"
 #include "physics/ircom/ircom_node.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 #include "tests/ircom/faults.h"
 
 #include <catch2/catch.hpp>

@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "physics/ircom/ircom_node.h"
 #include "physics/world/pose_signals.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 #include "tests/ircom/faults.h"
 #include "tests/kit/files.h"
 #include "tests/kit/scratch.h"

@@ -4,7 +4,7 @@
 #include "physics/ircom/ircom_node.h"
 #include "physics/ircom/scene.h"
 #include "physics/world/pose_signals.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 #include "tests/ircom/worlds.h"
 #include "tests/kit/scratch.h"
 

@@ -1,7 +1,7 @@
 // The e-puck serial records: layout by known bytes, exact inverses by random bytes, plausibility by range.
 
 #include "base/random.h"
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // Programs behind wrappers, and programs of several processes, in simulated time.
 
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "cosim/core/cores.h"
 #include "tests/kit/scratch.h"
 #include "tests/linuxboard/bench.h"

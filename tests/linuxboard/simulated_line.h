@@ -4,7 +4,7 @@
 // loop) and the project's own (drops partial records, boots at once). Faults are set byte by byte.
 
 #include "linuxboard/control/devices/transport.h"
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 
 #include <cstdint>
 #include <deque>

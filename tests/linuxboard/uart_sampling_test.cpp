@@ -1,6 +1,6 @@
 // What receivers of other rates make of a frame.
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // [mission] tables, and the score of a recorded run.
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
 #include "run/report/mission_score.h"
 #include "scenarios/reader/read_scenario.h"
 #include "tests/scenarios/temporary_file.h"

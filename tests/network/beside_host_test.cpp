@@ -1,7 +1,7 @@
 // Programs of several processes as their authors would write them: what they print on computers of a run's
 // network is what they print on this machine, whose kernel judges.
 
-#include "tests/end_to_end/process.h"
+#include "tests/end_to_end/kit/process.h"
 #include "tests/network/host_runs.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 #include "tests/network/host_runs.h"
 
-#include "tests/end_to_end/load.h"
-#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/kit/load.h"
+#include "tests/end_to_end/kit/same_run.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

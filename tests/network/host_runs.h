@@ -1,7 +1,7 @@
 #pragma once
 // Runs of programs on hosts and robots of a network, in every placement.
 
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,6 @@
 // Packets are read as they were written, and what was damaged on the way is not read at all.
 
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include "base/random.h"
 

@@ -1,7 +1,7 @@
 // Programs of this machine in a run's network, at ports on loopback; bad input.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // Runs with a network: programs that know of no emulator between robots and hosts, the same in every
 // placement; what a lossy network does to them; bad input.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
 #include "tests/network/host_runs.h"
 
 #include <catch2/catch.hpp>

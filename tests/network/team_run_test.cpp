@@ -1,9 +1,9 @@
 // Robots with the project's own network firmware: by WiFi over UART2 and the Linux board, and by Bluetooth;
 // and what a monitor captures of the radio.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 #include "tests/kit/files.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // The default medium against the strengths that IRIDIA measured with real boards: median and spread of the
 // range register at nine distances, both robots at random headings, through the board's own formula.
 
-#include "protocols/rab_reading.h"
+#include "protocols/infrared/rab_reading.h"
 #include "tests/physics/ir_worlds.h"
 
 #include <catch2/catch.hpp>

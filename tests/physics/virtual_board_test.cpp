@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "physics/ir/ir_node.h"
 #include "physics/world/pose_signals.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/kit/scratch.h"
 #include "tests/physics/events/plans.h"
 #include "tests/physics/ir_worlds.h"

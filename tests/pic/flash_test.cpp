@@ -3,10 +3,10 @@
 
 #include "tests/kit/board_faults.h"
 
-#include "base/archive.h"
 #include "base/error.h"
 #include "base/json.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "emu/image/intel_hex.h"
 #include "emu/pic/pic_node.h"
 #include "tests/kit/node_under_test.h"

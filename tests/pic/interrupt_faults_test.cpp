@@ -1,9 +1,9 @@
 // Interrupts that are lost or late, a battery's profile and dazzled proximity sensors, on a small firmware: a
 // timer toggles an LED each millisecond, UART2 sends back each byte that it interrupts for.
 
-#include "base/archive.h"
 #include "base/json.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
 #include "tests/kit/board_faults.h"

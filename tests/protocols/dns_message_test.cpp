@@ -1,6 +1,6 @@
 // Questions and answers of the domain name system, against octets as programs send them.
 
-#include "protocols/dns_message.h"
+#include "protocols/network/dns_message.h"
 
 #include <catch2/catch.hpp>
 

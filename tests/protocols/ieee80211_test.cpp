@@ -1,6 +1,6 @@
 // Captured frames of 802.11, octet by octet.
 
-#include "protocols/ieee80211.h"
+#include "protocols/network/ieee80211.h"
 
 #include <catch2/catch.hpp>
 

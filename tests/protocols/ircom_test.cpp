@@ -1,7 +1,7 @@
 // IRcom words: the format's own examples, every word and back, distorted and broken light.
 
 #include "base/random.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,11 +1,11 @@
-// What the frame's redundancy finds, against counts derived from the format (protocols/rab_errors.h has the
-// derivation in short; the counts are repeated here as formulas, the code under test does every error in
-// turn).
+// What the frame's redundancy finds, against counts derived from the format (protocols/infrared/rab_errors.h
+// has the derivation in short; the counts are repeated here as formulas, the code under test does every error
+// in turn).
 
 #include "base/error.h"
 #include "base/random.h"
-#include "protocols/rab_errors.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_errors.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <catch2/catch.hpp>
 

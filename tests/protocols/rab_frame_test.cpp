@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // Peaks to registers: the vectors measured at the real board's firmware (range-and-bearing facts, 4.4).
 
-#include "protocols/rab_reading.h"
+#include "protocols/infrared/rab_reading.h"
 
 #include <catch2/catch.hpp>
 

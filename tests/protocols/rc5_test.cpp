@@ -1,6 +1,6 @@
 // The remote control's waveform as firmware samples it.
 
-#include "protocols/rc5.h"
+#include "protocols/infrared/rc5.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 // XBee API frames: the bytes that the real TAM firmware and its coordinator send, every fault, random frames.
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // What the real image emits: range-and-bearing fact sheet 3, 6.3 A4 to A6 and A13, 2.2, 2.4, 4.8 Q2 to Q4 and
 // Q6.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/rab_board/rab_rig.h"
 
 #include <catch2/catch.hpp>

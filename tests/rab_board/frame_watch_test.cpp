@@ -1,6 +1,6 @@
 #include "emu/rab_board/frame_watch.h"
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 
 #include <catch2/catch.hpp>
 

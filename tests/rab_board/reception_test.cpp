@@ -1,7 +1,7 @@
 // What the real image makes of light: range-and-bearing fact sheet 4, 6.3 A8 to A10, A15, 2.2, 4.7, 4.8 Q5,
 // Q7.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/rab_board/rab_rig.h"
 
 #include <catch2/catch.hpp>

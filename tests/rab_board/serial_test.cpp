@@ -1,6 +1,6 @@
 // The board's two UARTs: range-and-bearing fact sheet 2.5, 1.5, 4.8 Q10.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/rab_board/rab_rig.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // What a receiver stands and what it loses: range-and-bearing fact sheet 4.5 and 4.6, with an ideal channel
 // (demodulators need 8 us to come on and to go off). Shares are of a few dozen phases, so margins are wide.
 
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/rab_board/rab_rig.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // of the other's receivers, with peaks that a formula of bearing and range (4.3) is held to.
 
 #include "emu/rab_board/signals.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tests/rab_board/rab_rig.h"
 
 #include <catch2/catch.hpp>

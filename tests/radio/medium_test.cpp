@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 #include "emu/radio/control.h"
-#include "protocols/mesh_frame.h"
+#include "protocols/radio/mesh_frame.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // Damaged ARGoS files are read or refused in one line, whatever the damage.
 
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/random.h"
-#include "base/text_file.h"
 #include "scenarios/argos/import.h"
 #include "scenarios/reader/read_scenario.h"
 

@@ -1,7 +1,7 @@
 // What a snapshot cannot go on with is refused, in one line that states why.
 
-#include "tests/end_to_end/one_line.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/one_line.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // Runs of boards, Linux programs and the world, saved at drawn instants: whoever goes on is the whole run.
 
 #include "base/random.h"
-#include "tests/end_to_end/same_run.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/same_run.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // The board at its pins, by small programs.
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "tests/tam_board/rig.h"
 
 #include <catch2/catch.hpp>

@@ -2,9 +2,9 @@
 // A booth with firmware and a radio module that answers every AT command after a millisecond and acknowledges
 // what is sent: what tests of the TAM's firmware, any, share.
 
-#include "protocols/uart_sampling.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
+#include "protocols/serial/uart_sampling.h"
 #include "tests/tam_board/rig.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // A TAM's board that ran ahead and went back is the board that never did, and one that was saved and loaded
 // goes on as the other. Real images (PUCKLOOP_IMAGES), own firmware, and a program that writes its own flash.
 
-#include "base/checkpoint.h"
+#include "base/states/checkpoint.h"
 #include "tests/tam_board/stimuli.h"
 
 #include <catch2/catch.hpp>

@@ -2,10 +2,10 @@
 // Random things that happen to a TAM's board: switches, light, battery, characters on both lines, the reset
 // button. The same stretch applied to two boards gives the same result, or something is wrong.
 
-#include "base/archive.h"
 #include "base/random.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "base/states/archive.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 #include "tests/tam_board/rig.h"
 
 #include <algorithm>

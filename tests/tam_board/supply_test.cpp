@@ -1,6 +1,6 @@
 // The booth's supply: battery, converter, and the chip's brown-out detector behind them.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "tests/tam_board/rig.h"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 // its earliest output time and its lookahead. The conductor checks every message.
 
 #include "cosim/core/time.h"
-#include "tests/end_to_end/workbench.h"
+#include "tests/end_to_end/kit/workbench.h"
 
 #include <cstdint>
 #include <filesystem>

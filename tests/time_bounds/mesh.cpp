@@ -1,6 +1,6 @@
 // Scenarios of TAMs, their radio modules and a coordinator's.
 
-#include "tests/end_to_end/api_frame.h"
+#include "tests/end_to_end/kit/api_frame.h"
 #include "tests/time_bounds/scenarios.h"
 
 #include <fmt/format.h>

@@ -4,8 +4,8 @@
 #include "tests/kit/dspic33_pieces.h"
 #include "tests/timing/timed_chip.h"
 
-#include "base/archive.h"
 #include "base/random.h"
+#include "base/states/archive.h"
 #include "emu/dspic/core/core.h"
 
 #include <catch2/catch.hpp>

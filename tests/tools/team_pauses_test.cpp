@@ -1,6 +1,6 @@
 // Pause times of teams: read from a trace, summarised, drawn, and made by emulated robots in a short run.
 
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 #include "reproductions/pause_times.h"
 #include "tests/kit/scratch.h"
 

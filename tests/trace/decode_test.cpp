@@ -3,12 +3,12 @@
 #include "trace_kit.h"
 
 #include "base/error.h"
-#include "protocols/epuck_serial.h"
-#include "protocols/rab_frame.h"
-#include "protocols/uart_sampling.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
-#include "traces/decode.h"
+#include "protocols/infrared/rab_frame.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
+#include "protocols/serial/epuck_serial.h"
+#include "protocols/serial/uart_sampling.h"
+#include "traces/decoders/decode.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

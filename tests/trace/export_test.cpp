@@ -4,7 +4,7 @@
 #include "trace_kit.h"
 
 #include "base/error.h"
-#include "traces/export.h"
+#include "traces/formats/export.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

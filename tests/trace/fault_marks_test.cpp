@@ -3,7 +3,7 @@
 #include "trace_kit.h"
 
 #include "base/error.h"
-#include "traces/decode.h"
+#include "traces/decoders/decode.h"
 #include "traces/edges.h"
 #include "traces/fault_marks.h"
 

@@ -2,7 +2,7 @@
 
 #include "foreign_tools.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // A flood of packets, of which each may have to wait for an earlier one, in bounded memory.
 
-#include "traces/pcapng_writer.h"
+#include "traces/formats/pcapng_writer.h"
 
 #include <catch2/catch.hpp>
 

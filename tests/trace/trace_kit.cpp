@@ -1,8 +1,8 @@
 #include "trace_kit.h"
 
-#include "tests/kit/scratch.h"
 #include "cosim/trace/trace_csv.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
+#include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 // A client that speaks to a server as it likes: raw bytes over a socket of 127.0.0.1.
 
-#include "tests/end_to_end/process.h"
+#include "tests/end_to_end/kit/process.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,6 @@
 // `puckloop view` as a process: what it answers, to whom, and what it refuses.
 
-#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/kit/one_line.h"
 #include "tests/view/client.h"
 
 #include <catch2/catch.hpp>

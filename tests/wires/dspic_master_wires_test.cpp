@@ -9,7 +9,7 @@
 #include "cosim/i2c/i2c_shared.h"
 #include "emu/dspic/peripherals/serial/i2c_master.h"
 #include "emu/dspic/peripherals/serial/i2c_slave.h"
-#include "tests/dspic/peripheral_bench.h"
+#include "tests/dspic/peripherals/peripheral_bench.h"
 #include "tests/wires/wire_master.h"
 #include "tests/wires/wire_slave.h"
 

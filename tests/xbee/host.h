@@ -4,9 +4,9 @@
 
 #include "base/json.h"
 #include "emu/xbee/module_node.h"
-#include "protocols/uart_sampling.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,9 +2,9 @@
 // beside what was published.
 
 #include "tools/bench/bluetooth.h"
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/text_file.h"
 #include "emu/bluetooth/exchange.h"
 #include "reproductions/exchange_boards.h"
 #include "tools/cli/check.h"

@@ -1,10 +1,10 @@
 // `puckloop bench density`: range and bearing among many robots, beside the published calibrations.
 
 #include "tools/bench/density.h"
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/shipped_files.h"
-#include "base/text_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/shipped_files.h"
+#include "base/files/text_file.h"
 #include "reproductions/density/density.h"
 #include "tools/bench/assignment.h"
 #include "tools/cli/check.h"

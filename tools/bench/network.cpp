@@ -1,10 +1,10 @@
 // `puckloop bench network`: pause times of teams that talk by WiFi, beside what was published.
 
 #include "tools/bench/network.h"
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/shipped_files.h"
-#include "base/text_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/shipped_files.h"
+#include "base/files/text_file.h"
 #include "reproductions/pause_times.h"
 #include "tools/cli/check.h"
 

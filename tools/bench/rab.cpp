@@ -1,9 +1,9 @@
 // `puckloop bench rab`: range and bearing as emulated boards read them, beside the published table.
 
 #include "tools/bench/rab.h"
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/text_file.h"
 #include "cosim/interrupt.h"
 #include "physics/ir/published_strengths.h"
 #include "reproductions/rab/measure.h"

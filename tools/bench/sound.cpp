@@ -1,9 +1,9 @@
 // `puckloop bench sound`: published experiments with sound, repeated on emulated boards.
 
 #include "tools/bench/sound.h"
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/claimed_folder.h"
+#include "base/files/text_file.h"
 #include "reproductions/ears_radio.h"
 #include "reproductions/exchange_boards.h"
 #include "reproductions/pictures.h"

@@ -1,7 +1,7 @@
 #include "tools/chips/exec_view.h"
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "ends/uart_spec.h"
 #include "scenarios/reader/events/command_text.h"
 

@@ -1,8 +1,8 @@
 // `puckloop upload`: a program into the flash of an e-puck's main board by its resident boot loader.
 
 #include "base/error.h"
-#include "base/new_file.h"
-#include "base/text_file.h"
+#include "base/files/new_file.h"
+#include "base/files/text_file.h"
 #include "bench/upload/serial_upload.h"
 #include "tools/chips/chips.h"
 #include "tools/cli/check.h"

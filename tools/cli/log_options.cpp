@@ -1,6 +1,6 @@
 #include "tools/cli/log_options.h"
 
-#include "base/log.h"
+#include "base/logs/log.h"
 
 namespace puckloop::tools {
 

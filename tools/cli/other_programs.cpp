@@ -1,7 +1,7 @@
 #include "tools/cli/other_programs.h"
 
 #include "base/error.h"
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "tools/cli/usage_error.h"
 
 #include "base/plain_text.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "tools/cli/shown_word.h"
 
 #include <CLI/CLI.hpp>

@@ -3,7 +3,7 @@
 // finds it.
 
 #include "base/error.h"
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 

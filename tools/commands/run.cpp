@@ -1,7 +1,7 @@
 // `puckloop run SCENARIO`: the main job.
 
 #include "base/error.h"
-#include "base/log.h"
+#include "base/logs/log.h"
 #include "base/plain_text.h"
 #include "cosim/interrupt.h"
 #include "run/driven/driven_run.h"
@@ -25,7 +25,7 @@
 #include "tools/files/scenario_name.h"
 #include "tools/shell/client_run.h"
 #include "tools/shell/shell.h"
-#include "traces/export.h"
+#include "traces/formats/export.h"
 #include "view/server/loopback_port.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "tools/files/scenario_name.h"
 
 #include "base/error.h"
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 #include "emu/image/chip_guess.h"
 #include "scenarios/values/image_key.h"
 

@@ -1,7 +1,7 @@
 #include "tools/files/text_files.h"
 
 #include "base/error.h"
-#include "base/new_file.h"
+#include "base/files/new_file.h"
 
 #include <cerrno>
 #include <cstdio>

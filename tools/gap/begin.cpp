@@ -1,7 +1,7 @@
 // puckloop gap new, puckloop gap check: a folder to be filled, and whether it is ready.
 
 #include "base/error.h"
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
 #include "gap/begin/new_folder.h"
 #include "gap/begin/readiness.h"
 #include "gap/kinds/read_kind.h"

@@ -1,8 +1,8 @@
 // puckloop gap: simulation against measured data.
 
-#include "base/claimed_folder.h"
 #include "base/error.h"
-#include "base/log.h"
+#include "base/files/claimed_folder.h"
+#include "base/logs/log.h"
 #include "base/plain_text.h"
 #include "emu/image/image.h"
 #include "gap/begin/expected_time.h"

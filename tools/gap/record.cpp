@@ -2,8 +2,8 @@
 
 #include "selftest/emulate/record.h"
 #include "base/error.h"
-#include "base/log.h"
-#include "base/shipped_files.h"
+#include "base/files/shipped_files.h"
+#include "base/logs/log.h"
 #include "run/files/program_path.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "campaigns/engine/campaign_file.h"
 #include "run/factory/preflight.h"
 #include "run/setup.h"

@@ -1,6 +1,6 @@
 #include "tools/guide/cost_estimate.h"
 
-#include "benchmark/reference.h"
+#include "benchmark/measures/reference.h"
 
 #include <algorithm>
 
@@ -9,9 +9,9 @@ namespace puckloop::tools {
 namespace {
 
 // Wall-clock seconds a simulated second takes in one process, on an idle machine whose reference loop
-// (benchmark/reference.h) runs at kReference million steps a second. Made of the shipped scenarios: hello,
-// swarm, own_rab, rab_pair, aggregation, tams18, tam_visit, virtual, ircom and bluetooth are met within a
-// factor of 1.45, team, network and can within 2.4.
+// (benchmark/measures/reference.h) runs at kReference million steps a second. Made of the shipped scenarios:
+// hello, swarm, own_rab, rab_pair, aggregation, tams18, tam_visit, virtual, ircom and bluetooth are met
+// within a factor of 1.45, team, network and can within 2.4.
 constexpr double kReference = 597;
 constexpr double kBoardCost = 0.007, kProgramCost = 0.008;  // of a robot, and of its Linux program
 constexpr double kRabCost = 0.065;                          // its range-and-bearing board, light and polling

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/sha256.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "tools/cli/command.h"
 #include "tools/guide/guide.h"
 #include "tools/guide/image_catalogue.h"

@@ -1,9 +1,9 @@
 // `puckloop list`: scenarios, experiments, campaigns and images, each with its first line.
 
 #include "base/error.h"
+#include "base/files/shipped_files.h"
 #include "base/json.h"
 #include "base/sha256.h"
-#include "base/shipped_files.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/guide/first_line.h"

@@ -1,7 +1,7 @@
 // `puckloop new NAME`: a folder with a scenario, controllers, a test, CI files and editor settings.
 
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/files/text_file.h"
 #include "tools/cli/command.h"
 #include "tools/guide/guide.h"
 #include "tools/guide/project/new_files.h"

@@ -1,8 +1,8 @@
 #include "tools/mpi/scale.h"
 
 #include "base/error.h"
-#include "base/shipped_files.h"
-#include "benchmark/lab_scenario.h"
+#include "base/files/shipped_files.h"
+#include "benchmark/scenarios/lab_scenario.h"
 #include "cosim/interrupt.h"
 #include "run/run_scenario.h"
 #include "run/setup.h"

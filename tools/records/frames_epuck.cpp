@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "protocols/epuck_serial.h"
+#include "protocols/serial/epuck_serial.h"
 #include "tools/cli/command.h"
 #include "tools/records/frames.h"
 

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "protocols/ircom.h"
+#include "protocols/infrared/ircom.h"
 #include "tools/cli/command.h"
 #include "tools/records/frames.h"
 

@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "protocols/rab_errors.h"
-#include "protocols/rab_frame.h"
+#include "protocols/infrared/rab_errors.h"
+#include "protocols/infrared/rab_frame.h"
 #include "tools/cli/command.h"
 #include "tools/records/frames.h"
 

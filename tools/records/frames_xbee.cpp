@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/json.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
+#include "protocols/radio/xbee_frame.h"
+#include "protocols/radio/xbee_message.h"
 #include "tools/cli/command.h"
 #include "tools/records/frames.h"
 

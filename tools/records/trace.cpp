@@ -6,8 +6,8 @@
 #include "tools/cli/other_programs.h"
 #include "tools/records/records.h"
 #include "tools/records/trace_parts.h"
-#include "traces/export.h"
 #include "traces/fault_marks.h"
+#include "traces/formats/export.h"
 #include "traces/recorded_trace.h"
 
 #include <fmt/format.h>

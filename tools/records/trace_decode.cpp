@@ -4,7 +4,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/records/trace_parts.h"
-#include "traces/decode.h"
+#include "traces/decoders/decode.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/time_check.h"
 #include "tools/records/trace_parts.h"
-#include "traces/export.h"
+#include "traces/formats/export.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "tools/viewer/film.h"
 
 #include "base/error.h"
+#include "base/files/new_file.h"
+#include "base/files/partial_file.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/new_file.h"
-#include "base/partial_file.h"
-#include "base/text_file.h"
 #include "tools/viewer/headless_browser.h"
 #include "view/events/read_events.h"
 #include "view/export_page.h"

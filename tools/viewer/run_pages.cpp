@@ -1,10 +1,10 @@
 #include "tools/viewer/run_pages.h"
 
 #include "base/error.h"
-#include "base/html_page.h"
+#include "base/files/text_file.h"
+#include "base/pages/html_page.h"
+#include "base/pages/svg.h"
 #include "base/plain_text.h"
-#include "base/svg.h"
-#include "base/text_file.h"
 #include "campaigns/engine/case_run.h"
 #include "campaigns/engine/html.h"
 #include "campaigns/engine/prefixes.h"

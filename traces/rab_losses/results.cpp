@@ -1,7 +1,7 @@
 #include "traces/rab_losses/results.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/text/csv.h"
 #include "cosim/trace/trace_csv.h"
 
 #include <fmt/format.h>

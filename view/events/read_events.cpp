@@ -1,10 +1,10 @@
 #include "view/events/read_events.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
-#include "traces/decode.h"
+#include "base/text/csv.h"
+#include "traces/decoders/decode.h"
 #include "traces/rab_losses/results.h"
 #include "view/recording/bytes.h"
 

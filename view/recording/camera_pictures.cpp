@@ -1,8 +1,8 @@
 #include "view/recording/camera_pictures.h"
 
-#include "base/csv.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
+#include "base/text/csv.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "view/recording/feed.h"
 
-#include "base/csv.h"
+#include "base/text/csv.h"
 #include "view/recording/bytes.h"
 
 #include <limits>

@@ -1,9 +1,9 @@
 #include "view/recording/recording.h"
 
-#include "base/csv.h"
 #include "base/error.h"
+#include "base/files/text_file.h"
 #include "base/json.h"
-#include "base/text_file.h"
+#include "base/text/csv.h"
 #include "physics/render/arena_file.h"
 #include "physics/render/result_rows.h"
 #include "physics/world/booth_record.h"

@@ -1,7 +1,7 @@
 #include "view/recording/serial_bytes.h"
 
-#include "base/csv.h"
 #include "base/json.h"
+#include "base/text/csv.h"
 #include "cosim/faults/spec/fault_kind.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "cosim/faults/frame_fault.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 #include <utility>

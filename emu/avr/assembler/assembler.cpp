@@ -1,7 +1,7 @@
 #include "emu/avr/assembler/assembler.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "emu/assembly/source_lines.h"
 #include "emu/assembly/text.h"
 #include "emu/avr/assembler/encoder.h"

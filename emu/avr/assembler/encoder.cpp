@@ -1,6 +1,6 @@
 #include "emu/avr/assembler/encoder.h"
 
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "emu/assembly/text.h"
 #include "emu/avr/isa/operands.h"
 

@@ -173,13 +173,13 @@ class Chip {
     /// What the program waits for, if it has done so for half a second or more and it cannot come.
     std::optional<std::string> hang() const;
 
-    /// Everything that time changes, of a chip of the same device and options (base/archive.h). Throws
+    /// Everything that time changes, of a chip of the same device and options (base/states/archive.h). Throws
     /// StateError.
     void state(StateWriter& archive) const;
     void state(StateReader& archive);
-    /// The same for a checkpoint (base/checkpoint.h), taken after mark(): flash and EEPROM stay out of it,
-    /// their changes since the mark are taken back by rewind(), before the checkpoint is read. The mark stays
-    /// until settle(). No stop address may be met or set between.
+    /// The same for a checkpoint (base/states/checkpoint.h), taken after mark(): flash and EEPROM stay out of
+    /// it, their changes since the mark are taken back by rewind(), before the checkpoint is read. The mark
+    /// stays until settle(). No stop address may be met or set between.
     void state(CheckpointWriter& archive) const;
     void state(CheckpointReader& archive);
     void mark();

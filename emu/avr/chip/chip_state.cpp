@@ -2,8 +2,8 @@
 
 #include "emu/avr/chip/chip_parts.h"
 
-#include "base/archive.h"
-#include "base/checkpoint.h"
+#include "base/states/archive.h"
+#include "base/states/checkpoint.h"
 
 namespace puckloop::avr {
 

@@ -1,6 +1,6 @@
 #include "emu/avr/chip/crash_text.h"
 
-#include "base/times_text.h"
+#include "base/text/times_text.h"
 
 #include "emu/image/code_places.h"
 

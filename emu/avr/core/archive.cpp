@@ -1,13 +1,13 @@
-// What a core remembers, listed once for saving and loading (base/archive.h). Decoded operations and what is
-// known about loops are found anew.
+// What a core remembers, listed once for saving and loading (base/states/archive.h). Decoded operations and
+// what is known about loops are found anew.
 
 #include "emu/avr/core/core.h"
 #include "emu/avr/machine/machine.h"
 
 #include <algorithm>
 
-#include "base/archive.h"
-#include "base/checkpoint.h"
+#include "base/states/archive.h"
+#include "base/states/checkpoint.h"
 
 namespace puckloop::avr {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Faults that a board carries out, as part of its state.
 
-#include "base/archive.h"
+#include "base/states/archive.h"
 #include "cosim/faults/fault_json.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "emu/dspic/assembler/mnemonics.h"
 
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 
 #include <algorithm>
 #include <map>

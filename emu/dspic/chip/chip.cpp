@@ -3,7 +3,7 @@
 #include "emu/dspic/chip/chip_parts.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -2,8 +2,8 @@
 // A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in
 // silicon. It knows no board: the board implements Pins, and gives the chip what arrives from outside.
 
-#include "base/archive.h"
-#include "base/checkpoint.h"
+#include "base/states/archive.h"
+#include "base/states/checkpoint.h"
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"

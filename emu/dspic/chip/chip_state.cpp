@@ -3,8 +3,8 @@
 #include "emu/dspic/chip/chip_parts.h"
 #include "emu/dspic/peripherals/timing/oscillator_33f.h"
 
-#include "base/archive.h"
-#include "base/checkpoint.h"
+#include "base/states/archive.h"
+#include "base/states/checkpoint.h"
 
 namespace puckloop::dspic {
 

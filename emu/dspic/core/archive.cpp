@@ -1,4 +1,4 @@
-// What a core remembers, listed once for saving and loading (base/archive.h).
+// What a core remembers, listed once for saving and loading (base/states/archive.h).
 
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/fast/loop_undo.h"

@@ -4,8 +4,8 @@
 // Sources: programmer's reference (DS70157), family reference manual (DS70049..DS70055).
 // Deviations are numbered in docs/fidelity.md under "dsPIC core".
 
-#include "base/archive.h"
-#include "base/checkpoint.h"
+#include "base/states/archive.h"
+#include "base/states/checkpoint.h"
 #include "emu/chip/instrument.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/errata.h"

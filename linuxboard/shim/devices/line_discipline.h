@@ -6,7 +6,7 @@
 // are dropped in ISIG mode. 2. Word erase, reprint and literal-next are not acted on.
 // 3. IXOFF is stored only.
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <termios.h>
 

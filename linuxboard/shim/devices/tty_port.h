@@ -17,7 +17,7 @@
 #include "linuxboard/shim/devices/line_discipline.h"
 #include "linuxboard/shim/devices/tty_settings.h"
 #include "linuxboard/shim/wire/wire.h"
-#include "protocols/uart_line.h"
+#include "protocols/serial/uart_line.h"
 
 #include <algorithm>
 #include <deque>

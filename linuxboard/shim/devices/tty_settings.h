@@ -2,7 +2,7 @@
 // termios as numbers: what a UART needs to know of it.
 
 #include "cosim/core/time.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <termios.h>
 

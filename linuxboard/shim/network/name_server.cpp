@@ -1,6 +1,6 @@
 #include "linuxboard/shim/network/name_server.h"
 
-#include "protocols/dns_message.h"
+#include "protocols/network/dns_message.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // How a Linux board is on a network: its address, and the names of all computers there.
 
 #include "base/fields/field.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <bit>
 #include <string>

@@ -2,7 +2,7 @@
 
 #include "linuxboard/shim/network/network_stack.h"
 
-#include "protocols/dns_message.h"
+#include "protocols/network/dns_message.h"
 
 #include <algorithm>
 #include <cerrno>

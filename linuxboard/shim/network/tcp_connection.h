@@ -8,7 +8,7 @@
 // 65,535 octets. 2. No urgent data.
 
 #include "cosim/core/time.h"
-#include "protocols/ip_packet.h"
+#include "protocols/network/ip_packet.h"
 
 #include <cstddef>
 #include <cstdint>

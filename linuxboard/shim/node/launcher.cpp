@@ -1,8 +1,8 @@
 #include "linuxboard/shim/node/launcher.h"
 
 #include "base/error.h"
+#include "base/files/shipped_files.h"
 #include "base/random.h"
-#include "base/shipped_files.h"
 #include "cosim/core/cores.h"
 #include "linuxboard/shim/kernel/linux_faults.h"
 #include "linuxboard/shim/node/last_line.h"

@@ -1,7 +1,7 @@
 #pragma once
 // [[group]] tables: many robots or things from one description.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "scenarios/description/scenario.h"
 #include "scenarios/values/reader.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // A scenario file with the files that it includes, as one tree.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <filesystem>
 #include <vector>

@@ -2,7 +2,7 @@
 // Values that differ from unit to unit: "normal(0, 15 ppm)", "uniform(0 s, 2 s)", "choice(1, 2, 5)".
 
 #include "base/random.h"
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <optional>
 #include <string>

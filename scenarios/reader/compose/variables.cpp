@@ -1,7 +1,7 @@
 #include "scenarios/reader/compose/variables.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "scenarios/values/reader.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 // Variables of a scenario: [variables] names values, ${NAME} in a text is one, --set replaces them.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <string>
 #include <vector>

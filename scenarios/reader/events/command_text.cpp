@@ -1,7 +1,7 @@
 #include "scenarios/reader/events/command_text.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "scenarios/reader/events/action_forms.h"
 
 #include <fmt/format.h>

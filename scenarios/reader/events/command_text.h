@@ -1,7 +1,7 @@
 #pragma once
 // Commands as text, "move can to 10 cm, 0 cm": to the table that an [[event]] would hold, and back.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 #include "scenarios/reader/faults/fault_tables.h"
 
 #include "base/error.h"
-#include "base/suggest.h"
+#include "base/text/suggest.h"
 #include "cosim/faults/spec/flash.h"
 #include "cosim/i2c/i2c_fault.h"
 #include "scenarios/reader/faults/fault_places.h"

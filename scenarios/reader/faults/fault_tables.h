@@ -1,7 +1,7 @@
 #pragma once
 // The [[fault]] tables of a scenario, and faults of the command line.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 #include "scenarios/description/scenario.h"
 
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // A fault in one line, as on the command line: `drop link=robot0.uart from=robot0.linux at=2s`.
 
-#include "base/toml_file.h"
+#include "base/text/toml_file.h"
 
 #include <string_view>
 

@@ -5,7 +5,7 @@
 #include "gap/data/experiment.h"
 #include "gap/models/model.h"
 #include "gap/reading/read_experiment.h"
-#include "selftest/benches.h"
+#include "selftest/benches/benches.h"
 #include "tests/kit/scratch.h"
 
 #include <cmath>

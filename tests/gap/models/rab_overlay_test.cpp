@@ -3,7 +3,7 @@
 
 #include "gap/overlay/overlay.h"
 #include "gap/pipeline/analyse.h"
-#include "protocols/rab_reading.h"
+#include "protocols/infrared/rab_reading.h"
 #include "scenarios/reader/read_scenario.h"
 #include "tests/kit/scratch.h"
 #include "tests/physics/ir_worlds.h"

@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "physics/ir/burst_outcomes.h"
 #include "physics/ir/published_strengths.h"
-#include "protocols/rab_reading.h"
+#include "protocols/infrared/rab_reading.h"
 #include "tests/gap/models/made_table.h"
 #include "tests/physics/ir_worlds.h"
 

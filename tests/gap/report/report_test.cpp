@@ -1,6 +1,6 @@
 // The report is one whole, self-contained page; charts hold what they are given.
 
-#include "base/chart.h"
+#include "base/pages/chart.h"
 #include "gap/report/report.h"
 #include "gap/report/table.h"
 #include "tests/gap/report/made_verdict.h"

@@ -2,13 +2,13 @@
 
 #include "base/error.h"
 #include "gap/effects/effect.h"
+#include "selftest/benches/rig.h"
 #include "selftest/case_list.h"
 #include "selftest/grammar/ablation.h"
 #include "selftest/grammar/curves.h"
 #include "selftest/grammar/families.h"
 #include "selftest/grammar/laboratory.h"
 #include "selftest/grammar/near_misses.h"
-#include "selftest/rig.h"
 #include "tests/kit/scratch.h"
 
 #include <catch2/catch.hpp>

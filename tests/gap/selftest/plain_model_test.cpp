@@ -1,9 +1,9 @@
 // The plain models at rest are what the simulator assumes; figures worked out by hand.
 
-#include "selftest/design_motion.h"
-#include "selftest/plain_accelerometer.h"
-#include "selftest/plain_motion.h"
-#include "selftest/plain_proximity.h"
+#include "selftest/benches/design_motion.h"
+#include "selftest/plain/plain_accelerometer.h"
+#include "selftest/plain/plain_motion.h"
+#include "selftest/plain/plain_proximity.h"
 
 #include <catch2/catch.hpp>
 

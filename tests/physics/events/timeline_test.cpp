@@ -1,8 +1,8 @@
 // When things happen: exact times, conditions, repetition, and whatever the grants are.
 
 #include "base/error.h"
-#include "protocols/ip_packet.h"
-#include "protocols/rc5.h"
+#include "protocols/infrared/rc5.h"
+#include "protocols/network/ip_packet.h"
 #include "tests/physics/events/plans.h"
 
 #include <catch2/catch.hpp>

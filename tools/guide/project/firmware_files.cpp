@@ -1,8 +1,8 @@
 // A project around a firmware of the main board.
 
 #include "base/error.h"
-#include "base/shipped_files.h"
-#include "base/text_file.h"
+#include "base/files/shipped_files.h"
+#include "base/files/text_file.h"
 #include "tools/guide/project/new_files.h"
 
 #include <fmt/format.h>

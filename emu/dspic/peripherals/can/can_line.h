@@ -20,7 +20,7 @@
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "protocols/can_frame.h"
+#include "protocols/can/can_frame.h"
 
 #include <cstdint>
 #include <optional>

@@ -3,7 +3,7 @@
 #include "emu/dspic/devices/register_bits.h"
 #include "emu/dspic/peripherals/timing/input_capture.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_sampling.h"
 
 #include <algorithm>
 #include <bit>

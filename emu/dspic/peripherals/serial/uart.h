@@ -27,7 +27,7 @@
 #include "emu/dspic/peripherals/serial/uart_counters.h"
 #include "emu/dspic/peripherals/serial/uart_receiver.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "protocols/irda.h"
+#include "protocols/serial/irda.h"
 
 #include <array>
 #include <cstdint>

@@ -5,8 +5,8 @@
 #include "emu/dspic/devices/register_bits.h"
 #include "emu/dspic/peripherals/serial/uart.h"
 
-#include "protocols/uart_line.h"
-#include "protocols/uart_sampling.h"
+#include "protocols/serial/uart_line.h"
+#include "protocols/serial/uart_sampling.h"
 
 namespace puckloop::dspic {
 
