@@ -181,7 +181,6 @@ void Conductor::State::execute_again(const RunSnapshot& from, const std::vector<
         const Wire& wire = network_->wire(record);
         received[wire.to].push_back({record.time, wire.to_port, record.payload});
     }
-    const std::vector<PortEcho> none;
     for (Time until = 0; until < from.time;) {
         until = std::min(from.time, until + kStep);
         for (const std::size_t n : nodes) {
@@ -190,7 +189,7 @@ void Conductor::State::execute_again(const RunSnapshot& from, const std::vector<
             for (std::size_t& i = taken[n]; i < received[n].size() && received[n][i].time < until; ++i)
                 inbox.push_back(received[n][i]);
             current_ = n;
-            handles_[n]->grant({until, until, until}, inbox, none);
+            handles_[n]->grant({until, until, until}, inbox, {});
         }
         for (const std::size_t n : nodes) {
             current_ = n;

@@ -119,7 +119,7 @@ void write_ready(Bytes& bytes, const Ready& ready) {
 }
 
 void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
-                 const std::vector<PortEcho>& echoes) {
+                 std::span<const PortEcho> echoes) {
     Frame frame(bytes, Kind::Grant);
     frame.writer.time(reach.sure);
     frame.writer.time(reach.until);

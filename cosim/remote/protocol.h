@@ -61,7 +61,7 @@ struct Error {
 void write_hello(Bytes& bytes, const Hello& hello);
 void write_ready(Bytes& bytes, const Ready& ready);
 void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
-                 const std::vector<PortEcho>& echoes);
+                 std::span<const PortEcho> echoes);
 void write_done(Bytes& bytes, const Advanced& advanced, const NodeState& state,
                 const std::vector<Message>& outbox);
 void write_wind_up(Bytes& bytes, int signal);

@@ -36,7 +36,7 @@ class RemoteNode : public NodeHandle {
         });
     }
 
-    void grant(Reach reach, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
+    void grant(Reach reach, const std::vector<Message>& inbox, std::span<const PortEcho> echoes) override {
         asked_ = reach.until;
         busy_ = true;
         protocol::write_grant(bytes_, reach, inbox, echoes);

@@ -16,7 +16,7 @@ class PortsOnly : public NodeHandle {
     void add(const std::string& port, PortKind kind) { ports_.push_back({port, kind}); }
 
     void await_ready() override {}
-    void grant(Reach, const std::vector<Message>&, const std::vector<PortEcho>&) override {}
+    void grant(Reach, const std::vector<Message>&, std::span<const PortEcho>) override {}
     bool poll(bool) override { return true; }
     void wind_up(int) override {}
     std::vector<std::uint8_t> save() override { return {}; }

@@ -45,17 +45,17 @@ class LocalNode : public NodeHandle {
 
     void await_ready() override {}
 
-    void grant(Reach reach, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
+    void grant(Reach reach, const std::vector<Message>& inbox, std::span<const PortEcho> echoes) override {
         reach_ = reach;
         inbox_ = &inbox;
-        echoes_ = &echoes;
+        echoes_ = echoes;
         begun_ = false;
     }
 
     bool poll(bool wait) override {
         std::optional<Advanced> done;
         guarded("stopped", [&] {
-            done = begun_ ? node_->resume(wait, outbox_) : node_->begin(reach_, *inbox_, *echoes_, outbox_);
+            done = begun_ ? node_->resume(wait, outbox_) : node_->begin(reach_, *inbox_, echoes_, outbox_);
         });
         begun_ = true;
         if (!done) return false;
@@ -142,7 +142,7 @@ class LocalNode : public NodeHandle {
 
     std::unique_ptr<RunAhead> node_;
     const std::vector<Message>* inbox_ = nullptr;
-    const std::vector<PortEcho>* echoes_ = nullptr;
+    std::span<const PortEcho> echoes_;
     Reach reach_;
     bool begun_ = false;        ///< the work of the grant
     bool suspendable_ = false;  ///< the node (Suspendable)

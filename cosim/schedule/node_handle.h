@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,9 +71,8 @@ class NodeHandle {
     /// Waits until the node is made and has reported its ports and first state.
     virtual void await_ready() = 0;
     /// Asks the node to advance, in strides if `echoes` asks for them (cosim/schedule/stride.h); one grant at
-    /// a time.
-    virtual void grant(Reach reach, const std::vector<Message>& inbox,
-                       const std::vector<PortEcho>& echoes) = 0;
+    /// a time. `inbox` and what `echoes` shows stay as they are until the reply is complete.
+    virtual void grant(Reach reach, const std::vector<Message>& inbox, std::span<const PortEcho> echoes) = 0;
     /// True once the reply to the last grant is complete. A node in this process does its work here, up to
     /// where it has to wait for a program (Suspendable). `wait` lets it wait for some milliseconds, one
     /// elsewhere for some tenths of a second.

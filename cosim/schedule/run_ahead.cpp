@@ -23,7 +23,7 @@ std::span<const Message> take_before(Time until, std::span<const Message>& inbox
 }  // namespace
 
 Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
-                           const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
+                           std::span<const PortEcho> echoes, std::vector<Message>& outbox) {
     std::optional<Advanced> done = begin(reach, inbox, echoes, outbox);
     while (!done)
         done = resume(true, outbox);
@@ -31,7 +31,7 @@ Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
 }
 
 std::optional<Advanced> RunAhead::begin(const Reach& reach, std::span<const Message> inbox,
-                                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
+                                        std::span<const PortEcho> echoes, std::vector<Message>& outbox) {
     outbox.clear();
     reach_ = reach;
     sent_before_.clear();
@@ -78,7 +78,7 @@ std::optional<Advanced> RunAhead::resume(bool wait, std::vector<Message>& outbox
 }
 
 /// One that is granted on its own echo's account is not run ahead, even if it could be.
-bool RunAhead::goes_in_strides(const std::vector<PortEcho>& echoes) const {
+bool RunAhead::goes_in_strides(std::span<const PortEcho> echoes) const {
     return !marked_ && (!echoes.empty() || node_->rewindable() == nullptr);
 }
 

@@ -41,13 +41,13 @@ class RunAhead {
     /// A node that cannot go back takes what comes before reach.until, in strides as `echoes` say. With
     /// reach.ahead == reach.until nothing is foreseen any more. In place of what `outbox` held: everything
     /// sent since the mark that the last call left; how much of it is final is part of the answer.
-    Advanced advance(const Reach& reach, std::span<const Message> inbox, const std::vector<PortEcho>& echoes,
+    Advanced advance(const Reach& reach, std::span<const Message> inbox, std::span<const PortEcho> echoes,
                      std::vector<Message>& outbox);
 
     /// As advance(), but nothing where the node would wait for something outside of simulated time
     /// (Suspendable): resume() then goes on. The inbox may go, the outbox must stay.
     std::optional<Advanced> begin(const Reach& reach, std::span<const Message> inbox,
-                                  const std::vector<PortEcho>& echoes, std::vector<Message>& outbox);
+                                  std::span<const PortEcho> echoes, std::vector<Message>& outbox);
     /// After begin() gave nothing. `wait`: lets the node wait for some milliseconds.
     std::optional<Advanced> resume(bool wait, std::vector<Message>& outbox);
 
@@ -97,7 +97,7 @@ class RunAhead {
         std::uint64_t marks = 0, rewinds = 0;
     };
 
-    bool goes_in_strides(const std::vector<PortEcho>& echoes) const;
+    bool goes_in_strides(std::span<const PortEcho> echoes) const;
     bool begin_sure(std::span<const Message>& inbox);
     void end_sure(std::vector<Message>& outbox);
     Advanced go_ahead(std::span<const Message> inbox, std::vector<Message>& outbox);

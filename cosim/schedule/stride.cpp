@@ -10,7 +10,7 @@ namespace puckloop::cosim {
 namespace {
 
 /// First instant at which something can come back that the node does from `now` on.
-Time first_echo(const Node& node, Time now, Time first_in, const std::vector<PortEcho>& echoes) {
+Time first_echo(const Node& node, Time now, Time first_in, std::span<const PortEcho> echoes) {
     Time first = kNever;
     for (std::size_t p = 0; p < echoes.size(); ++p) {
         const PortEcho& echo = echoes[p];
@@ -27,7 +27,7 @@ Time first_echo(const Node& node, Time now, Time first_in, const std::vector<Por
 }  // namespace
 
 Time advance_in_strides(Node& node, Time from, Reach reach, std::span<const Message> inbox,
-                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
+                        std::span<const PortEcho> echoes, std::vector<Message>& outbox) {
     Time now = from;
     Time until = reach.until;
     while (now < until) {

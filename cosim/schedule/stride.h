@@ -39,6 +39,6 @@ struct Reach {
 /// one entry per port, or none: then nothing can come back and reach.until is reached in one stride. Messages
 /// of the inbox from the returned time on were not given to the node.
 Time advance_in_strides(Node& node, Time from, Reach reach, std::span<const Message> inbox,
-                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox);
+                        std::span<const PortEcho> echoes, std::vector<Message>& outbox);
 
 }  // namespace puckloop::cosim
