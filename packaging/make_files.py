@@ -3,7 +3,7 @@
     share                   completion of three shells, compressed manual pages (clients/shell)
     changelog.gz            CHANGELOG.md
     changelog.Debian.gz     of the packages; its date is the sources' (SOURCE_DATE_EPOCH, the commit, or CHANGELOG.md)
-    copyright.puckloop, copyright.gap
+    copyright.puckloop, copyright.gap, copyright.mpi
     docs                    the pages, with commands as they are typed where it is installed
     puckloop-VERSION.dist-info   the Python client as Python's tools see it, with its plugin for pytest
 """
@@ -41,7 +41,8 @@ def make(options: argparse.Namespace) -> None:
     folder, source, version = options.folder, options.source, options.version
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    subprocess.run([sys.executable, "-B", source / "clients" / "shell", options.program, folder], check=True)
+    for program in [options.program, *([options.mpi_program] if options.mpi_program else [])]:
+        subprocess.run([sys.executable, "-B", source / "clients" / "shell", program, folder], check=True)
     for page in sorted((folder / "share" / "man" / "man1").glob("*.1")):
         compress(page.read_bytes(), page.with_name(page.name + ".gz"))
         page.unlink()
@@ -63,7 +64,8 @@ def make(options: argparse.Namespace) -> None:
     own = (source / "packaging" / "copyright").read_text(encoding="utf-8")
     libraries = (source / "packaging" / "copyright.libraries").read_text(encoding="utf-8")
     solver = (source / "packaging" / "copyright.solver").read_text(encoding="utf-8")
-    for name, parts in (("puckloop", (own, libraries)), ("gap", (own, solver, libraries))):
+    mpi = (source / "packaging" / "copyright.mpi").read_text(encoding="utf-8")
+    for name, parts in (("puckloop", (own, libraries)), ("gap", (own, solver, libraries)), ("mpi", (own, mpi, libraries))):
         (folder / f"copyright.{name}").write_text("\n\n".join(parts), encoding="utf-8")
 
     info = folder / f"puckloop-{version}.dist-info"
@@ -82,6 +84,7 @@ def main() -> int:
     for name in ("version", "revision", "maintainer"):
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--program", type=pathlib.Path, required=True)
+    parser.add_argument("--mpi-program", type=pathlib.Path)
     parser.add_argument("--source", type=pathlib.Path, required=True)
     parser.add_argument("folder", type=pathlib.Path)
     try:

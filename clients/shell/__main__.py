@@ -4,12 +4,14 @@
     share/zsh/vendor-completions/_puckloop
     share/fish/vendor_completions.d/puckloop.fish
     share/man/man1/puckloop.1, puckloop-run.1, ...
+
+Of puckloop-mpi: its manual pages alone.
 """
 
 from __future__ import annotations
 
-import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -19,12 +21,12 @@ import tables
 
 
 def version_of(program: str) -> str:
-    said = subprocess.run([program, "version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           check=False).stdout
-    try:
-        return str(json.loads(said)["version"])
-    except (ValueError, KeyError):
-        raise tables.Unreadable("is no puckloop that states its version") from None
+    found = re.match(r"puckloop(?:-mpi)? (\d+\.\d+\.\d+)\b", said)
+    if not found:
+        raise tables.Unreadable("is no puckloop that states its version")
+    return found[1]
 
 
 def main() -> int:
@@ -35,11 +37,14 @@ def main() -> int:
     try:
         version = version_of(program)
         commands = tables.read(program)
-        for place, text in (("bash-completion/completions/puckloop", completions.bash(commands)),
-                            ("zsh/vendor-completions/_puckloop", completions.zsh(commands)),
-                            ("fish/vendor_completions.d/puckloop.fish", completions.fish(commands)),
-                            *((f"man/man1/{man_pages.page_name(one.words)}.1",
-                               man_pages.page(one, commands, version)) for one in commands)):
+        name = commands[0].usage.split(" ")[0]
+        made = [(f"man/man1/{man_pages.page_name(one.words, name)}.1", man_pages.page(one, commands, version, name))
+                for one in commands]
+        if name == "puckloop":
+            made += [("bash-completion/completions/puckloop", completions.bash(commands)),
+                     ("zsh/vendor-completions/_puckloop", completions.zsh(commands)),
+                     ("fish/vendor_completions.d/puckloop.fish", completions.fish(commands))]
+        for place, text in made:
             file = share / place
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")

@@ -14,8 +14,8 @@ def _text(text: str) -> str:
     return re.sub(r"^([.'])", r"\\&\1", text)
 
 
-def page_name(words: Sequence[str]) -> str:
-    return "-".join(("puckloop", *words))
+def page_name(words: Sequence[str], program: str) -> str:
+    return "-".join((program, *words))
 
 
 def _option(option: Option) -> list[str]:
@@ -25,12 +25,13 @@ def _option(option: Option) -> list[str]:
     return [".TP", names + more, _text(option.about) or "\\&"]
 
 
-def page(command: Command, commands: Sequence[Command], version: str) -> str:
-    name = page_name(command.words)
+def page(command: Command, commands: Sequence[Command], version: str, program: str) -> str:
+    """Of `program`, such as puckloop."""
+    name = page_name(command.words, program)
     usage = command.usage.split(" ")
     lines = [f'.TH "{_text(name.upper())}" "1" "" "puckloop {_text(version)}" "puckloop"',
              ".SH NAME", f"{_text(name)} \\- {_text(command.about)}",
-             ".SH SYNOPSIS", f"\\fB{_text(' '.join(('puckloop', *command.words)))}\\fR "
+             ".SH SYNOPSIS", f"\\fB{_text(' '.join((program, *command.words)))}\\fR "
              + _text(" ".join(usage[1 + len(command.words):]))]
     if command.positionals:
         lines.append(".SH ARGUMENTS")
@@ -62,5 +63,5 @@ def page(command: Command, commands: Sequence[Command], version: str) -> str:
     parents = [command.words[:-1]] if command.words else []
     others = [one.words for one in commands if one.words[:-1] == command.words and one.words]
     if parents + others:
-        lines += [".SH SEE ALSO", ", ".join(f"\\fB{_text(page_name(words))}\\fR(1)" for words in parents + others)]
+        lines += [".SH SEE ALSO", ", ".join(f"\\fB{_text(page_name(words, program))}\\fR(1)" for words in parents + others)]
     return "\n".join(lines) + "\n"

@@ -45,8 +45,8 @@ const char kUsage[] =
     "range-and-bearing board:\n"
     "  --rab              use it if it is there (aggregate and follow do so anyway)\n"
     "  --rab-required     use it; end with status 2 when it does not answer\n"
-    "  --rab-id N         1..255, the robot's own (the number that its host name ends with); it is the\n"
-    "                     lowest byte of what it sends\n"
+    "  --rab-id N         1..255, the robot's own (the number that its host name ends with, 255 for 0);\n"
+    "                     it is the lowest byte of what it sends\n"
     "  --rab-bytes N      payload, 1..4 bytes, the same on all robots (2)\n"
     "  --rab-range N      0 farthest, about 1 m, to 255 shortest (115)\n"
     "  --rab-poll-ms N    between two looks for messages (20)\n"
@@ -81,15 +81,18 @@ bool machine_needs_neighbours(const std::vector<MachineState>& states) {
     });
 }
 
-/// The number at the end of the board's host name, as fleets of robots are named; 0: none from 1 to 255.
+/// The number at the end of the board's host name, as fleets of robots are named; 0: none up to 255.
+/// Simulators count their robots from 0, which means none here: that one is 255.
 int number_of_host() {
     char name[256] = "";
     if (::gethostname(name, sizeof name - 1) != 0) return 0;
     const std::string text(name);
     const std::size_t begin = text.find_last_not_of("0123456789") + 1;  // 0 where there are digits alone
     if (begin == text.size() || text.size() - begin > 3) return 0;
+    constexpr int kMost = 255;
     const int number = std::atoi(text.c_str() + begin);
-    return number <= 255 ? number : 0;
+    if (number == 0) return kMost;
+    return number <= kMost ? number : 0;
 }
 
 enum {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "scenarios/argos/controllers.h"
 #include "scenarios/argos/distribute.h"
+#include "scenarios/argos/loop_places.h"
 
 #include <fmt/format.h>
 
@@ -50,7 +51,6 @@ class Arena {
     }
 
     void add() {
-        look_for_mission();
         Tree arena(file_.line_of(node_));
         if (x_ == 0.0 && y_ == 0.0) {
             arena.lengths("size", {width_, depth_});
@@ -66,32 +66,16 @@ class Arena {
         }
         arena.flag("walls", false);  // ARGoS' arena is where things may be: nothing stands around it
         root_.table("arena", arena);
+        mission_ = read_loop_places(file_, root_);
         for (const pugi::xml_node thing : node_.children())
             if (thing.type() == pugi::node_element) add_thing(thing);
         if (!floor_done_ && !options_.floor.empty()) add_floor_file(node_, options_.floor, true);
         add_missions_robots();
+        refuse_no_robots();
         if (ircom_) root_.table("ircom", Tree(file_.line_of(node_)));
     }
 
   private:
-    struct Mission {
-        pugi::xml_node params;
-        double radius = 0.0;
-        long long robots = 0;
-    };
-
-    /// The loop functions of the published missions put all robots into a disc.
-    void look_for_mission() {
-        const pugi::xml_node loop = file_.root().child("loop_functions");
-        const pugi::xml_node params = loop.child("params");
-        if (!params.attribute("dist_radius")) return;
-        mission_.params = params;
-        mission_.radius = file_.number(params, "dist_radius");
-        mission_.robots = file_.integer(params, "number_robots", 0, 1000, 0);
-        if (!(mission_.radius >= 0.0))
-            file_.fail(params, "<params>: dist_radius is below 0", "a radius in m");
-    }
-
     bool mission_places() const { return mission_.radius > 0.0; }
 
     void add_thing(pugi::xml_node node) {
@@ -111,7 +95,7 @@ class Arena {
         else if (kind == "tam")
             add_tam(node);
         else if (kind == "distribute")
-            add_distribution(file_, node, controllers_, robot_template(), root_);
+            add_distributed(node);
         else
             file_.fail(node, fmt::format("<{}> is no thing that can be here", kind),
                        "e-puck, tams, box, cylinder, light, floor or distribute");
@@ -233,12 +217,8 @@ class Arena {
         const Controller& controller = controllers_.of_robot(node);
         const std::string name = robot_name(file_, node, file_.text(node, "id"));
         const Pose pose = pose_of(node);
-        if (mission_places()) {
-            placed_[controller.id].push_back(name);
-            placed_line_.try_emplace(controller.id, file_.line_of(node));
-            templates_.try_emplace(controller.id, controller);
-            return;
-        }
+        if (mission_places()) return take_for_mission(controller, name, file_.line_of(node));
+        robots_ = true;
         Tree robot = robot_tree(file_.line_of(node), controller);
         robot.text("name", name)
             .lengths("position", {pose.x, pose.y})
@@ -246,14 +226,42 @@ class Arena {
         root_.add("robot", robot);
     }
 
+    /// The loop functions of a mission move robots from wherever they were put.
+    void take_for_mission(const Controller& controller, const std::string& name, int line) {
+        robots_ = true;
+        placed_[controller.id].push_back(name);
+        placed_line_.try_emplace(controller.id, line);
+        templates_.try_emplace(controller.id, controller);
+    }
+
+    void add_distributed(pugi::xml_node node) {
+        const pugi::xml_node entity = node.child("entity"), robot = entity.child("e-puck");
+        if (!robot || !mission_places()) {
+            robots_ = robots_ || robot;
+            return add_distribution(file_, node, controllers_, robot_template(), root_);
+        }
+        const Distributed wanted = distributed(file_, entity);
+        const Controller& controller = controllers_.of_robot(robot);
+        const std::string name = robot_name(file_, robot, file_.text(robot, "id"));
+        for (long long i = 0; i < wanted.count; ++i)
+            take_for_mission(controller, fmt::format("{}{}", name, wanted.first + i), file_.line_of(robot));
+    }
+
+    /// Programs of the simulator place robots in many experiments, each in its own way.
+    void refuse_no_robots() {
+        const pugi::xml_node loop = file_.root().child("loop_functions");
+        if (robots_ || !loop) return;
+        file_.fail(loop, "there are no robots: the loop functions place them, which are not executed",
+                   "<e-puck> or <distribute> in <arena>, or <params number_robots=\"20\" "
+                   "dist_radius=\"1\"/>");
+    }
+
     void add_missions_robots() {
         if (!mission_places()) return;
         if (placed_.empty() && mission_.robots > 0) {
             const Controller& controller = controllers_.only(mission_.params);
             for (long long i = 1; i <= mission_.robots; ++i)
-                placed_[controller.id].push_back(fmt::format("epuck{}", i));
-            placed_line_[controller.id] = file_.line_of(mission_.params);
-            templates_.try_emplace(controller.id, controller);
+                take_for_mission(controller, fmt::format("epuck{}", i), file_.line_of(mission_.params));
         }
         if (placed_.empty()) return;
         file_.note(
@@ -294,6 +302,7 @@ class Arena {
         if (with.attribute("network")) tam.integer("network", file_.integer(with, "network", 0, 3));
         if (file_.flag(node, "movable", false))
             file_.note(node, fmt::format("{} does not move here", described(node)));
+        robots_ = true;
         root_.add("tam", tam);
     }
 
@@ -303,11 +312,12 @@ class Arena {
     Controllers controllers_;
     pugi::xml_node node_;
     double width_ = 0.0, depth_ = 0.0, x_ = 0.0, y_ = 0.0;
-    Mission mission_;
+    LoopPlaces mission_;
     std::map<std::string, std::vector<std::string>> placed_;  // names by controller
     std::map<std::string, int> placed_line_;
     std::map<std::string, Controller> templates_;
     bool floor_done_ = false, ircom_ = false;
+    bool robots_ = false;  // or TAMs, are there
 };
 
 }  // namespace

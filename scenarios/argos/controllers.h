@@ -25,7 +25,8 @@ class Controllers {
     /// The one that `node` asks for by its `config`. Throws InputError where there is none, or where it needs
     /// a device that the e-puck does not have.
     const Controller& of_robot(pugi::xml_node robot);
-    /// The only one, or the first, with a note at `node`; throws InputError where there is none.
+    /// Of robots that loop functions make: "automode", as in published ones, the only one, or the first, with
+    /// a note at `node`; throws InputError where there is none.
     const Controller& only(pugi::xml_node node);
 
   private:

@@ -118,6 +118,11 @@ std::string robot_name(XmlFile& file, pugi::xml_node node, const std::string& id
     return name;
 }
 
+Distributed distributed(XmlFile& file, pugi::xml_node entity) {
+    constexpr long long kMost = 1000;
+    return {file.integer(entity, "quantity", 0, kMost), file.integer(entity, "base_num", 0, 1'000'000, 0)};
+}
+
 void add_distribution(XmlFile& file, pugi::xml_node node, Controllers& controllers,
                       const RobotTemplate& robot, Tree& root) {
     const auto child = [&](const char* name) {
@@ -127,9 +132,7 @@ void add_distribution(XmlFile& file, pugi::xml_node node, Controllers& controlle
     };
     const pugi::xml_node position = child("position"), orientation = child("orientation"),
                          entity = child("entity");
-    constexpr long long kMost = 1000;
-    const long long quantity = file.integer(entity, "quantity", 0, kMost);
-    const long long first = file.integer(entity, "base_num", 0, 1'000'000, 0);
+    const auto [quantity, first] = distributed(file, entity);
     if (quantity == 0) return;
     pugi::xml_node thing;
     for (const pugi::xml_node one : entity.children())

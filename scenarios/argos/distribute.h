@@ -13,6 +13,12 @@ namespace puckloop::argos {
 /// A group of robots with this controller, without names and places.
 using RobotTemplate = std::function<Tree(int line, const Controller& controller, const std::string& key)>;
 
+/// How many things an <entity> has, and the number at the end of the first one's name.
+struct Distributed {
+    long long count = 0, first = 0;
+};
+Distributed distributed(XmlFile& file, pugi::xml_node entity);
+
 /// One <distribute>, or nothing where its quantity is 0.
 void add_distribution(XmlFile& file, pugi::xml_node node, Controllers& controllers,
                       const RobotTemplate& robot, Tree& root);

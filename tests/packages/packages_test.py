@@ -15,7 +15,7 @@ import unittest
 
 BUILD = pathlib.Path(os.environ["PUCKLOOP_BUILD"])
 VERSION = os.environ["PUCKLOOP_VERSION"]
-NAMES = ("puckloop", "puckloop-doc", "puckloop-firmware", "puckloop-gap", "python3-puckloop")
+NAMES = ("puckloop", "puckloop-doc", "puckloop-firmware", "puckloop-gap", "puckloop-mpi", "python3-puckloop")
 LIBRARIES = ("xbyak", "CLI11", "toml11", "JSON for Modern C++", "spdlog", "fmt", "pugixml", "Boost", "Eigen", "ODE", "nettle",
              "libelf", "libzip", "libpng", "SQLite", "zlib", "libedit")
 
@@ -44,12 +44,14 @@ class Packages(unittest.TestCase):
         self.assertEqual(sorted(self.files), list(NAMES))
         for package, file in self.files.items():
             self.assertEqual(self.field(package, "Version"), f"{VERSION}-1")
-            architecture = "amd64|arm64" if package in ("puckloop", "puckloop-gap") else "all"
+            architecture = "amd64|arm64" if package in ("puckloop", "puckloop-gap", "puckloop-mpi") else "all"
             self.assertRegex(self.field(package, "Architecture"), f"^({architecture})$")
             self.assertNotRegex(self.field(package, "Depends"), "g\\+\\+|gcc-12|cmake|-dev", file)
         self.assertIn("libode8", self.field("puckloop", "Depends"))
         self.assertNotIn("libcholmod", self.field("puckloop", "Depends"))
         self.assertIn("libcholmod3", self.field("puckloop-gap", "Depends"))
+        self.assertNotIn("libopenmpi", self.field("puckloop", "Depends"))
+        self.assertIn("libopenmpi3", self.field("puckloop-mpi", "Depends"))
 
     def test_notices(self):
         for package in NAMES:
@@ -65,8 +67,9 @@ class Packages(unittest.TestCase):
             self.assertIn(library, text)
         self.assertNotIn("SuiteSparse", text)
         self.assertIn("SuiteSparse", (documents / "puckloop-gap" / "copyright").read_text())
+        self.assertIn("Open MPI", (documents / "puckloop-mpi" / "copyright").read_text())
         pages = [page.name for page in (self.folder / "tree" / "usr" / "share" / "man" / "man1").iterdir()]
-        for page in ("puckloop.1.gz", "puckloop-run.1.gz", "puckloop-gap.1.gz"):
+        for page in ("puckloop.1.gz", "puckloop-run.1.gz", "puckloop-gap.1.gz", "puckloop-mpi.1.gz", "puckloop-mpi-run.1.gz"):
             self.assertIn(page, pages)
         for place in ("bash-completion/completions/puckloop", "zsh/vendor-completions/_puckloop",
                       "fish/vendor_completions.d/puckloop.fish", "libsigrokdecode/decoders/epuck_btcom/pd.py"):
@@ -129,6 +132,8 @@ class Packages(unittest.TestCase):
         inside("cd /tmp/elsewhere && puckloop gap --help && puckloop gap record timing --brief --out recorded")
         inside("cd /tmp/elsewhere && python3 -c \"import puckloop; run = puckloop.start('hello'); run.step(to='1 s'); run.end()\"",
                user="nobody:nogroup")
+        inside("cd /tmp/elsewhere && mpirun -n 2 --bind-to none --oversubscribe puckloop-mpi run rab_pair --duration 1 --out ranks"
+               " && grep -q '\"success\": *true' ranks/report.json", user="nobody:nogroup")
         asked = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "initialize",
                             "params": {"protocolVersion": "2024-11-05", "capabilities": {}, "clientInfo": {"name": "t", "version": "1"}}})
         self.assertIn("serverInfo", inside(f"cd /tmp/elsewhere && echo '{asked}' | puckloop mcp", user="nobody:nogroup"))

@@ -115,6 +115,75 @@ TEST_CASE("what is not taken over is listed once, with its line") {
                          }));
 }
 
+namespace {
+
+/// `experiment()` whose loop functions have these parameters.
+std::string with_loop_functions(const std::string& params, const std::string& arena) {
+    std::string text = experiment(arena);
+    return text.insert(text.find("<controllers>"), "<loop_functions library=\"l.so\" label=\"l\"><params " +
+                                                       params + "/></loop_functions>\n");
+}
+
+const std::string kThreePucks =
+    "<distribute><position method=\"uniform\" min=\"-0.9,-0.9,0\" max=\"0.9,0.9,0\"/><orientation "
+    "method=\"gaussian\" mean=\"0,0,0\" std_dev=\"360,0,0\"/><entity quantity=\"3\" "
+    "max_trials=\"100\"><e-puck "
+    "id=\"epuck\"><controller config=\"a\"/></e-puck></entity></distribute>";
+
+}  // namespace
+
+TEST_CASE("loop functions that state a disc move the robots that the arena has, and make none beside them") {
+    const ArgosFile file(with_loop_functions("dist_radius=\"0.3\" number_robots=\"3\"", kThreePucks));
+    const Scenario scenario = read_scenario(file.path());
+    REQUIRE(scenario.robots.size() == 3);
+    CHECK(scenario.robots[0].name == "epuck0");
+    CHECK(scenario.robots[2].name == "epuck2");
+    for (const auto& robot : scenario.world.robots)
+        CHECK(std::hypot(robot.x, robot.y) <= 0.3 + 1e-4);
+    const ArgosFile none(with_loop_functions("dist_radius=\"0.3\" number_robots=\"2\"", ""));
+    REQUIRE(read_scenario(none.path()).robots.size() == 2);
+    CHECK(read_scenario(none.path()).robots[1].name == "epuck2");
+}
+
+TEST_CASE("walls that loop functions build are a regular polygon about the origin") {
+    const ArgosFile file(with_loop_functions("number_robots=\"4\" build_arena=\"true\" number_edges=\"6\" "
+                                             "number_boxes_per_edge=\"4\" lenght_boxes=\"0.25\"",
+                                             ""));
+    const Scenario scenario = read_scenario(file.path());
+    REQUIRE(scenario.world.boxes.size() == 6);
+    // Six triangles of 60 degrees with sides of 1 m: their height is half the square root of 3.
+    const double to_wall = std::sqrt(3.0) / 2.0;
+    for (std::size_t side = 0; side < 6; ++side) {
+        const auto& wall = scenario.world.boxes[side];
+        CHECK(std::hypot(wall.x, wall.y) == Approx(to_wall));
+        CHECK(wall.width == Approx(1.0));
+        CHECK(std::abs(std::remainder(std::atan2(wall.y, wall.x) - wall.heading, 2 * std::numbers::pi)) <
+              1e-9);
+    }
+    REQUIRE(scenario.robots.size() == 4);
+    for (const auto& robot : scenario.world.robots)
+        CHECK(std::hypot(robot.x, robot.y) <= to_wall - 0.1 + 1e-4);
+    // The other spelling, and a disc that the file states.
+    const ArgosFile other(with_loop_functions("dist_radius=\"0.2\" build_arena=\"true\" number_edges=\"4\" "
+                                              "number_boxes_per_edge=\"2\" length_boxes=\"0.5\"",
+                                              kPuck));
+    const Scenario square = read_scenario(other.path());
+    REQUIRE(square.world.boxes.size() == 4);
+    CHECK(square.world.boxes[1].y == Approx(0.5));
+    CHECK(std::hypot(square.world.robots[0].x, square.world.robots[0].y) <= 0.2 + 1e-4);
+}
+
+TEST_CASE("what loop functions state out of range, or place by themselves, is refused with its line") {
+    CHECK(problem_of(with_loop_functions("build_arena=\"true\" number_edges=\"2\"", kPuck)) ==
+          "line 3: <params>: number_edges = '2' is out of range (expected a whole number from 3 to 100)");
+    CHECK(problem_of(with_loop_functions("build_arena=\"true\" lenght_boxes=\"0\"", kPuck)) ==
+          "line 3: <params>: lenght_boxes is not above 0 (expected a length in m)");
+    CHECK(problem_of(with_loop_functions("nbEpucks=\"20\"", "<floor source=\"loop_functions\"/>")) ==
+          "line 3: there are no robots: the loop functions place them, which are not executed (expected "
+          "<e-puck> "
+          "or <distribute> in <arena>, or <params number_robots=\"20\" dist_radius=\"1\"/>)");
+}
+
 TEST_CASE("distributions become groups drawn by the run's seed") {
     const Scenario scenario = read_scenario(kFolder + "distributions.argos");
     CHECK_FALSE(scenario.duration);

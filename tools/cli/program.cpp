@@ -83,21 +83,21 @@ int after_output(int status) {
 }  // namespace
 
 int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words,
-                std::span<const Heading> headings) {
+                std::span<const Heading> headings, const std::string& name) {
     restore_surroundings();
     std::set_terminate(end_uncaught);
     CLI::App app{"puckloop: real robot firmware, without the robot"};
-    app.name("puckloop");
+    app.name(name);
     app.require_subcommand(1);
     app.formatter(std::make_shared<HelpText>());
-    app.set_version_flag("--version", "puckloop " + version_text(), "print version and commit");
+    app.set_version_flag("--version", name + " " + version_text(), "print version and commit");
     int status = 0;
     Command root(app);
     for (const DeclareCommand declare : commands)
         declare(root, status);
     // Now: a command would take it over.
-    app.footer("puckloop help COMMAND lists its options. First steps: puckloop list, puckloop new NAME.\n"
-               "Documentation: /usr/share/doc/puckloop/docs, or docs/ of the sources.");
+    app.footer(name + " help COMMAND lists its options. First steps: puckloop list, puckloop new NAME.\n"
+                      "Documentation: /usr/share/doc/puckloop/docs, or docs/ of the sources.");
     for (CLI::App* command : app.get_subcommands({})) {
         for (const Heading& one : headings)
             if (one.command == command->get_name()) command->group(std::string(one.heading));
@@ -111,7 +111,7 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
     } catch (const CLI::CallForHelp& error) {
         if (!app.get_subcommands().empty() || app.remaining().empty()) return after_output(app.exit(error));
         // `puckloop snapshott --help`: help on what there is not
-        const CLI::ExtrasError unknown("puckloop", app.remaining());
+        const CLI::ExtrasError unknown(name, app.remaining());
         print_error(usage_error(app, unknown));
         return 2;
     } catch (const CLI::ParseError& error) {

@@ -15,9 +15,10 @@ struct Heading {
     std::string_view command, heading;
 };
 
-/// Runs the subcommand that `words` (without the program's name) ask for. Returns the exit status: 0 success,
-/// 1 a run or check failed, 2 wrong use or bad input, with one line on standard error.
+/// Runs the subcommand that `words` (without the program's name) ask for. Help calls the program `name`.
+/// Returns the exit status: 0 success, 1 a run or check failed, 2 wrong use or bad input, with one line on
+/// standard error.
 int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words,
-                std::span<const Heading> headings = {});
+                std::span<const Heading> headings = {}, const std::string& name = "puckloop");
 
 }  // namespace puckloop::tools

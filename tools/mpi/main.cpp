@@ -58,7 +58,8 @@ int run(int argc, char** argv) {
     cosim::MpiHosts hosts(job);
     g_hosts = &hosts;
     constexpr std::array kCommandsHere{declare_run_on_hosts, declare_scale_of_hosts};
-    const int status = run_program(kCommandsHere, pack_linux_arguments({argv + 1, argv + argc}));
+    const int status =
+        run_program(kCommandsHere, pack_linux_arguments({argv + 1, argv + argc}), {}, "puckloop-mpi");
     if (const cosim::MpiTraffic& traffic = hosts.traffic(); traffic.messages > 0)
         fmt::print(stderr, "{} ranks: {} messages, {:.1f} MB, {:.2f} s waited\n", job.ranks(),
                    traffic.messages, 1e-6 * static_cast<double>(traffic.bytes), traffic.waited_s);
