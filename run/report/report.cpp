@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "run/plan/state_plan.h"
 #include "run/plan/stats_plan.h"
+#include "run/report/alike_warnings.h"
 #include "run/report/fault_results.h"
 #include "run/report/mission_score.h"
 #include "run/report/supply_resets.h"
@@ -109,34 +110,6 @@ void add_linux_warnings(const std::string& name, const ordered_json& node, const
     if (const auto failed = count("i2c", "failed"); failed > 0)
         warnings.push_back(fmt::format("{}: {} of {} I2C transfers failed (the bus's log has the addresses)",
                                        name, failed, count("i2c", "transfers")));
-}
-
-/// Twenty robots with one program have one thing to warn of: "robot0.linux and 19 more: ...".
-std::vector<std::string> alike_as_one(const std::vector<std::string>& warnings) {
-    struct Kind {
-        std::string node, text;
-        std::size_t count = 0;
-    };
-    std::vector<Kind> kinds;
-    for (const std::string& warning : warnings) {
-        const std::size_t colon = warning.find(": ");
-        const std::string node = colon == std::string::npos ? "" : warning.substr(0, colon);
-        const std::string text = colon == std::string::npos ? warning : warning.substr(colon);
-        const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) {
-            return !node.empty() && kind.text == text &&
-                   kind.node.substr(kind.node.rfind('.') + 1) == node.substr(node.rfind('.') + 1);
-        });
-        if (same != kinds.end())
-            ++same->count;
-        else
-            kinds.push_back({node, text, 1});
-    }
-    std::vector<std::string> shown;
-    for (const Kind& kind : kinds)
-        shown.push_back(kind.count == 1
-                            ? kind.node + kind.text
-                            : fmt::format("{} and {} more{}", kind.node, kind.count - 1, kind.text));
-    return shown;
 }
 
 }  // namespace
