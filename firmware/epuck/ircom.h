@@ -1,7 +1,6 @@
-/* IRcom: words of one byte by the proximity sensors' light, to and from other robots and TAMs; only in the
- * image epuck_ircom.hex. The format: protocols/infrared/ircom.h. Sending is timer 2 that toggles all
- * emitters; receiving is a record of all phototransistors' scans in which a word is looked for. One at a
- * time: who sends does not hear. */
+/* IRcom: words of one byte by the proximity sensors' light, to and from other robots and TAMs; only in the image
+ * epuck_ircom.hex. The format: protocols/ircom.h. Sending is timer 2 that toggles all emitters; receiving is a
+ * record of all phototransistors' scans in which a word is looked for. One at a time: who sends does not hear. */
 #ifndef EPUCK_IRCOM_H
 #define EPUCK_IRCOM_H
 
@@ -14,11 +13,10 @@ struct ircom_word {
 };
 
 void ircom_start(void);
-/* Sends the word when the one before is out and nothing is coming in; a later one takes its place until then.
- */
+/* Sends the word when the one before is out and nothing is coming in; a later one takes its place until then. */
 void ircom_send(u8 word);
 /* 1 and the newest word, once; 0 if none came since. */
-u8 ircom_receive(struct ircom_word* word);
+u8 ircom_receive(struct ircom_word *word);
 /* By the converter's interrupt, before proximity_scanned(). */
 void ircom_scanned(void);
 /* In the main loop: looks for words, begins to send. */

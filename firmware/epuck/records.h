@@ -1,5 +1,5 @@
 /* The serial records between the Linux board and this chip; little-endian, which is the compiler's own layout
- * (fact sheet 1.3; protocols/serial/epuck_serial.h is the other end). */
+ * (fact sheet 1.3; protocols/epuck_serial.h is the other end). */
 #ifndef EPUCK_RECORDS_H
 #define EPUCK_RECORDS_H
 
