@@ -1,26 +1,22 @@
 #pragma once
-// Machine code for one block of operations, x86-64. Host registers:
-//   rbp  &Machine::st        rbx  cycle at the block's start   r13  instructions executed before it
-//   r12  data RAM            r14d Machine::watch               r15  entries by program word
-//   rdi  start of all code   r8d, r9d, r10d adder's operands and sum; r11d a result; esi a carry (flags.h)
-//   rax, rcx, rdx            scratch
-// W registers, SR and RAM stay in memory. Nothing is called from here and no stack frame is made but the
-// entry code's, so that no exception ever passes through. Whatever is not plain leaves the block before the
-// instruction: the interpreter executes it.
+// What a block's machine code (emu/chip/translate/block_emitter.h) is made of for the dsPIC. Host registers
+// beside those of every family:
+//   rbp  &Machine::st        r13  instructions executed before the block
+//   r12  data RAM            r14d Machine::watch
+//   r8d, r9d, r10d adder's operands and sum; r11d a result; esi a carry (flags.h)
+// W registers, SR and RAM stay in memory.
 
+#include "emu/chip/translate/block_emitter.h"
 #include "emu/dspic/translate/flags.h"
 #include "emu/dspic/translate/layout.h"
 #include "emu/dspic/translate/library.h"
 
-#include <xbyak/xbyak.h>
-
 #include <functional>
 #include <optional>
-#include <vector>
 
 namespace puckloop::dspic::translate {
 
-class Emitter : private Xbyak::CodeGenerator {
+class Emitter : public chip::BlockEmitter {
   public:
     /// Words behind a block that it looks at: where a skip leads depends on them.
     static constexpr std::uint32_t kLookedAt = 2;
@@ -28,39 +24,28 @@ class Emitter : private Xbyak::CodeGenerator {
     /// Writes to `where`. The code at the start of all (emit_entry_code()) lies `offset` bytes before it.
     Emitter(const Layout& layout, std::uint8_t* where, std::size_t room, std::size_t offset);
 
-    /// Offsets of what every block shares, from the start of all code.
-    struct Shared {
-        std::uint32_t no_entry = 0, enter = 0, leave = 0, arrival = 0;
-    };
-    /// The code at the start: what the unused entries (0) lead to, the way in and out, arrivals at branches.
-    Shared emit_entry_code();
-    std::size_t size() const { return getSize(); }
-
-    /// Translates from program word `index` on. False if not even one operation could be.
+    /// Translates from program word `index` on. False if not even one operation could be. The words that it
+    /// rests on include the ones looked at.
     bool emit_block(Machine& m, std::uint32_t index, const Shared& shared);
-    /// Program words that the outcome rests on, the ones looked at included.
-    std::uint32_t words() const { return words_; }
 
   private:
-    enum class Flow : std::uint8_t { Unknown, Next, Ended };
     static constexpr int kRamStart = 0x0800;
-    static constexpr std::uint32_t kMostOperations = 32;
     /// A longer block would more often be cut by the limit.
     static constexpr std::uint32_t kMostCycles = 32;
 
     // block.cpp
+    void load_registers() override;
+    void store_registers() override;
+    void emit_own() override { emit_arrival(); }
+    void emit_head(Xbyak::Label& late) override;
+    bool goes_on() const override { return steps_ < kMostOperations && cycles_ < kMostCycles; }
+    Flow emit_next() override;
+    void settle() override;
+    std::function<void()> point() override;
     Flow emit(Machine& m, const Op* op);
-    /// The instruction cannot be finished here: the label leads out before it. Nothing has changed yet.
-    Xbyak::Label& bail();
-    /// What emits a way out before the present instruction, where these flags hold.
-    std::function<void()> leaving(const Flags& flags);
-    void finish_bail();
     void finish_step(const Op* op);
-    void leave_before(std::uint32_t index, Left why);
     /// Counts the cycles and steps since the block's start, and what they do to Machine::watch.
     void account(std::uint32_t cycles, std::uint32_t steps, std::uint32_t keep, std::uint32_t writes);
-    void go_to(std::uint32_t index);
-    const void* at_start(std::uint32_t offset);
 
     // flags.cpp
     /// Puts into SR what is not there yet. Uses eax, ecx, edx.
@@ -179,35 +164,16 @@ class Emitter : private Xbyak::CodeGenerator {
     void bail_if_requested();
     bool emit_skip(Machine& m, const Op* op);
 
-    struct Cold {
-        Xbyak::Label label;
-        std::function<void()> emit;
-    };
-    /// Emitted behind the block.
-    void cold(const Xbyak::Label& label, std::function<void()> emit) {
-        cold_.push_back({label, std::move(emit)});
-    }
-
     const Layout& layout_;
-    std::size_t offset_;
-    Shared shared_;
-    const Machine* machine_ = nullptr;  ///< whose program it is
+    Machine* machine_ = nullptr;  ///< whose program it is
 
     // The block so far.
-    std::uint32_t start_ = 0;
-    Xbyak::Label entry_;
-    std::uint32_t words_ = 1 + kLookedAt;
     Flags flags_;
-    std::uint32_t index_ = 0;   ///< program word of the present operation
-    std::uint32_t cycles_ = 0;  ///< from the block's start to the present operation
-    std::uint32_t steps_ = 0;   ///< operations before the present one
-    std::uint32_t stall_ = 0;   ///< cycles, of the present one
+    std::uint32_t stall_ = 0;  ///< cycles, of the present one
     std::uint32_t keep_ = 0xFFFFFFFF;
     std::uint32_t writes_ = 0;  ///< of the operation before
-    bool bailed_ = false;
-    Xbyak::Label bail_;
-    Flags bail_flags_;
-    std::vector<Cold> cold_;
+    std::uint32_t needs_ = 0;   ///< pointers that must have been written at its start
+    std::size_t needs_at_ = 0;  ///< where the code has them
 };
 
 }  // namespace puckloop::dspic::translate

@@ -53,15 +53,7 @@ void Emitter::leave_taken(const Op* op, std::uint32_t target, std::uint32_t extr
 void Emitter::side_exit(const Op* op, int host_condition, std::uint32_t target, std::uint32_t extra_cycles) {
     Xbyak::Label taken;
     jump_if(host_condition, taken);
-    cold(taken, [this, op, target, extra_cycles, flags = flags_, cycles = cycles_, steps = steps_,
-                 keep = keep_, stall = stall_] {
-        flags_ = flags;
-        cycles_ = cycles;
-        steps_ = steps;
-        keep_ = keep;
-        stall_ = stall;
-        leave_taken(op, target, extra_cycles);
-    });
+    cold(taken, [this, op, target, extra_cycles] { leave_taken(op, target, extra_cycles); });
 }
 
 Emitter::Flow Emitter::emit_flow(Machine& m, const Op* op) {
@@ -163,9 +155,7 @@ void Emitter::emit_return(const Op* op) {
     finish_bail();
     add(w_word(15), -kReturnBytes);
     account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
-    mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
-    add(rax, rdi);
-    jmp(rax);
+    go_to_ecx();
 }
 
 void Emitter::bail_if_requested() {
@@ -202,9 +192,7 @@ void Emitter::emit_return_from_interrupt(const Op* op) {
     add(w_word(15), -kReturnBytes);
     mov(byte[rbp + layout_.repeat_first], 1);
     account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
-    mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
-    add(rax, rdi);
-    jmp(rax);
+    go_to_ecx();
 }
 
 bool Emitter::emit_skip(Machine& m, const Op* op) {

@@ -44,7 +44,7 @@ void Emitter::readable_index(int disp, bool byte_size) {
     jae(elsewhere, T_NEAR);
     L(back);
     // To a register the index leads all the same: backwards from RAM.
-    cold(elsewhere, [this, disp, byte_size, back, cycles = cycles_, leave = leaving(flags_)] {
+    cold(elsewhere, [this, disp, byte_size, back] {
         Xbyak::Label out;
         lea(ecx, ptr[rax + disp]);
         movzx(ecx, cx);
@@ -57,14 +57,14 @@ void Emitter::readable_index(int disp, bool byte_size) {
         mov(edx, ecx);
         shr(edx, 1);
         mov(rax, qword[rbp + layout_.plain]);
-        jump_unless_plain(out, cycles);
+        jump_unless_plain(out, cycles_);
         mov(rax, qword[rbp + layout_.plain]);
         lea(rcx, ptr[rax + rcx + kValue]);
         sub(rcx, r12);
         if (!byte_size) sar(rcx, 1);
         jmp(back, T_NEAR);
         L(out);
-        leave();
+        leave_unchanged();
     });
 }
 
