@@ -62,7 +62,7 @@ Emitter::Flow Emitter::emit_next() {
     if (op->marks || op->run == &decode_now) return Flow::Unknown;
     stall_ = op->uses & writes_ & ~kPointers ? 1 : 0;
     const std::uint32_t uses = (steps_ == 0 ? op->uses : op->uses & kPointers) & keep_;
-    const Flow flow = emit(*machine_, op);
+    const Flow flow = emit(op);
     if (flow != Flow::Unknown) needs_ |= uses;
     return flow;
 }
@@ -85,11 +85,10 @@ std::function<void()> Emitter::point() {
     };
 }
 
-Emitter::Flow Emitter::emit(Machine& m, const Op* op) {
-    const Flow flow = emit_flow(m, op);
+Emitter::Flow Emitter::emit(const Op* op) {
+    const Flow flow = emit_flow(op);
     if (flow != Flow::Unknown) return flow;
-    if (!emit_alu(op) && !emit_move(op) && !emit_shift(op) && !emit_bits(op) && !emit_multiply(op))
-        return Flow::Unknown;
+    if (!emit_clear_flag(op) && !emit_recipe(op)) return Flow::Unknown;
     finish_step(op);
     return Flow::Next;
 }
