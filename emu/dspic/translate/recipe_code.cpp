@@ -300,8 +300,10 @@ void RecipeCode::compute_signed(const Recipe::Value& value, bool is_signed, cons
 }
 
 void RecipeCode::shift(const Recipe::Node& node, const Xbyak::Reg32& to) {
+    const bool count_first = !r_.is(node.a, Kind::Cell);  // which ecx leads to
+    if (!node.b.known && count_first) compute(node.b, ecx, ecx);
     compute_signed(node.a, node.kind == Kind::SignedRight, to);
-    if (!node.b.known) compute(node.b, ecx, ecx);
+    if (!node.b.known && !count_first) compute(node.b, ecx, ecx);
     const auto by = [&](auto literal, auto counted) { node.b.known ? literal(node.b.number) : counted(); };
     switch (node.kind) {
     case Kind::Left:
