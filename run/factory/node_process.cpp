@@ -4,7 +4,7 @@
 #include "cosim/core/process_name.h"
 #include "cosim/remote/processes/node_server.h"
 #include "cosim/remote/protocol.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "run/factory/node_factory.h"
 
 #include <cstdlib>

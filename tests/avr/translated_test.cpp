@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "base/states/archive.h"
 #include "emu/avr/isa/isa.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "tests/avr/random_loops.h"
 #include "tests/avr/rig.h"
 

@@ -44,6 +44,7 @@ const std::vector<std::string> kFolders = {
     "cosim/resume",
     "cosim",
     "emu/chip",
+    "emu/chip/translate",
     "emu/assembly",
     "emu/image",
     "emu/dspic/devices",

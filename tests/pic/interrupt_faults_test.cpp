@@ -4,7 +4,7 @@
 #include "base/json.h"
 #include "base/random.h"
 #include "base/states/archive.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "emu/pic/pic_node.h"
 #include "tests/kit/board_faults.h"
 #include "tests/kit/node_under_test.h"

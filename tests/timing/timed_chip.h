@@ -2,7 +2,7 @@
 // A chip of either family with a program in assembly, and stretches of instructions that the program itself
 // times by Timer1: what a logic analyser would see of a part, free of the emulator's own notion of a cycle.
 
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/dspic/devices/device.h"

@@ -1,9 +1,10 @@
 #include "tests/translate/random_loops.h"
 
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/machine/isa.h"
 
+#include <array>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,9 @@ namespace {
 
 constexpr std::uint32_t kRoutines = LoopProgram::kBody + 2 * LoopProgram::kBodyWords;
 
-bool plain(const Form& form) {
-    return !form.alias && !form.two_words() && !form.name.starts_with("TBLWT") && form.cycles == 1 &&
-           !form.name.starts_with("BRA") && form.name != "RESET" && form.name != "PWRSAV_lit1" &&
-           !form.name.starts_with("REPEAT") && !form.name.starts_with("DIV") && form.name != "ULNK";
-}
-
 /// Of the core class, which is most of what programs execute.
 bool common(const Form& form) {
-    return plain(form) && form.value >> 20 != 0xC && form.value >> 20 != 0xF;
+    return is_plain(form) && !is_dsp(form) && form.value >> 20 != 0xF;
 }
 
 std::uint32_t with(const Form& form, std::uint32_t word, char letter, std::uint64_t number) {
@@ -49,26 +44,29 @@ std::uint32_t with_sane_pointers(RandomStream& random, const Form& form, std::ui
     return word;
 }
 
-std::uint32_t some_word(RandomStream& random, const std::vector<const Form*>& forms) {
-    while (true) {
-        const Form& form = *forms[random.below(forms.size())];
-        std::uint32_t word = (static_cast<std::uint32_t>(random.next()) & 0xFFFFFF & ~form.mask) | form.value;
-        if (form.has_field('f') && random.below(24) != 0) {  // mostly RAM
-            const auto address = static_cast<std::uint32_t>(0x0800 + random.below(0x800));
-            const bool words = form.width('f') == 15;
-            word = with(form, word, 'f', words ? address / 2 : random.below(4) ? address & ~1u : address);
-        }
-        if (form.has_field('f') && random.below(10) == 0) {  // a register that programs do look at
-            constexpr std::uint32_t kRegisters[] = {0x32, 0x34, 0x36, 0x84,  0x85,
-                                                    0x86, 0x8C, 0x94, 0x280, 0x282};
-            const std::uint32_t address = kRegisters[random.below(std::size(kRegisters))];
-            word = with(form, word, 'f', form.width('f') == 15 ? address / 2 : address);
-        }
-        if (random.below(24) != 0) word = with_sane_pointers(random, form, word);
-        // W15 loses the stack soon enough without being written on purpose.
-        if (form.has_field('d') && form.field('d', word) == 15 && random.below(16) != 0) continue;
-        if (dspic::find_form(word) == &form) return word;
+/// Nothing if that word would be of another form, or spoil the stack.
+std::optional<std::uint32_t> try_word_of(RandomStream& random, const Form& form) {
+    std::uint32_t word = (static_cast<std::uint32_t>(random.next()) & 0xFFFFFF & ~form.mask) | form.value;
+    if (form.has_field('f') && random.below(24) != 0) {  // mostly RAM
+        const auto address = static_cast<std::uint32_t>(0x0800 + random.below(0x800));
+        const bool words = form.width('f') == 15;
+        word = with(form, word, 'f', words ? address / 2 : random.below(4) ? address & ~1u : address);
     }
+    if (form.has_field('f') && random.below(10) == 0) {  // a register that programs do look at
+        constexpr std::uint32_t kRegisters[] = {0x32, 0x34, 0x36, 0x84, 0x85, 0x86, 0x8C, 0x94, 0x280, 0x282};
+        const std::uint32_t address = kRegisters[random.below(std::size(kRegisters))];
+        word = with(form, word, 'f', form.width('f') == 15 ? address / 2 : address);
+    }
+    if (random.below(24) != 0) word = with_sane_pointers(random, form, word);
+    // W15 loses the stack soon enough without being written on purpose.
+    if (form.has_field('d') && form.field('d', word) == 15 && random.below(16) != 0) return std::nullopt;
+    if (dspic::find_form(word) != &form) return std::nullopt;
+    return word;
+}
+
+std::uint32_t some_word(RandomStream& random, const std::vector<const Form*>& forms) {
+    while (true)
+        if (const auto word = try_word_of(random, *forms[random.below(forms.size())])) return *word;
 }
 
 std::uint32_t relative(std::uint32_t opcode, std::uint32_t from, std::uint32_t to) {
@@ -77,12 +75,37 @@ std::uint32_t relative(std::uint32_t opcode, std::uint32_t from, std::uint32_t t
 
 }  // namespace
 
+bool is_plain(const Form& form) {
+    return !form.alias && !form.two_words() && !form.name.starts_with("TBLWT") && form.cycles == 1 &&
+           !form.name.starts_with("BRA") && form.name != "RESET" && form.name != "PWRSAV_lit1" &&
+           !form.name.starts_with("REPEAT") && !form.name.starts_with("DIV") && form.name != "ULNK";
+}
+
+bool is_dsp(const Form& form) {
+    return form.value >> 20 == 0xC || form.value >> 18 == 0x3C;
+}
+
+std::uint32_t random_word_of(RandomStream& random, const Form& form) {
+    while (true)
+        if (const auto word = try_word_of(random, form)) return *word;
+}
+
+std::uint32_t random_plain_word(RandomStream& random) {
+    static const auto list = [] {
+        std::vector<const Form*> forms;
+        for (const Form& form : dspic::forms())
+            if (is_plain(form) && !is_dsp(form)) forms.push_back(&form);
+        return forms;
+    }();
+    return some_word(random, list);
+}
+
 std::uint32_t random_word(RandomStream& random, std::uint32_t pc) {
     static const auto all = [] {
         std::array<std::vector<const Form*>, 2> lists;
         for (const Form& form : dspic::forms()) {
             if (common(form)) lists[0].push_back(&form);
-            if (plain(form)) lists[1].push_back(&form);
+            if (is_plain(form)) lists[1].push_back(&form);
         }
         return lists;
     }();

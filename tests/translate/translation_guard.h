@@ -1,7 +1,7 @@
 #pragma once
 // Cores made while it lives translate as it states.
 
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 
 namespace puckloop::tests {
 

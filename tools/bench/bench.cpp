@@ -3,7 +3,7 @@
 #include "tools/bench/bench.h"
 #include "base/error.h"
 #include "benchmark/cases.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "tools/bench/bluetooth.h"
 #include "tools/bench/density.h"
 #include "tools/bench/network.h"

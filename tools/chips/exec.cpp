@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "bench/options.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "tools/chips/chips.h"
 #include "tools/chips/exec_view.h"
 #include "tools/cli/check.h"

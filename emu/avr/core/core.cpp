@@ -2,7 +2,7 @@
 
 #include "emu/avr/core/run.h"
 #include "emu/avr/machine/machine.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 
 #include <algorithm>
 #include <utility>

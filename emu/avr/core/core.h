@@ -67,7 +67,7 @@ class Core {
     /// Busy-wait loops are skipped without changing anything observable. On from the start.
     void set_skip_idle(bool on);
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
-    /// default as emu/chip/translation_switch.h states.
+    /// default as emu/chip/translate/translation_switch.h states.
     void set_translate(bool on);
     /// From now on `instrument` looks on, at data accesses too if `accesses`; null: nobody does. Between runs
     /// only; set_skip_idle() and set_translate() are to be called without one.

@@ -1,12 +1,10 @@
 #pragma once
-// Machine code for one block of operations, x86-64. Host registers:
-//   r12  Machine             r13  data space              rbx  cycle at the block's start
-//   r14  instructions executed before it                  r15  entries by program word
-//   rbp  tables (layout.h)   rdi  start of all code       r10  0
-//   r11  Z of a chain of SBC, SBCI, CPC so far            rax, rcx, rdx, rsi scratch
-// Working registers, SREG and RAM stay in memory. Nothing is called from here and no stack frame is made but
-// the entry code's. Whatever is not plain leaves the block before the instruction: the interpreter executes
-// it.
+// What a block's machine code (emu/chip/translate/block_emitter.h) is made of for the AVR. Host registers
+// beside those of every family:
+//   r12  Machine             r13  data space              r14  instructions executed before the block
+//   rbp  tables (layout.h)   r10  0                       r11  Z of a chain of SBC, SBCI, CPC so far
+//   rsi  scratch
+// Working registers, SREG and RAM stay in memory.
 //
 // The host's flags after an addition, subtraction or shift are the AVR's. They stay where they are (Pending)
 // until something that the host has to do would lose them; what is in SREG is only brought up to date where
@@ -15,55 +13,38 @@
 
 #include "emu/avr/translate/layout.h"
 #include "emu/avr/translate/library.h"
-
-#include <xbyak/xbyak.h>
+#include "emu/chip/translate/block_emitter.h"
 
 #include <functional>
 #include <vector>
 
 namespace puckloop::avr::translate {
 
-class Emitter : private Xbyak::CodeGenerator {
+class Emitter : public chip::BlockEmitter {
   public:
     /// Writes to `where`. The code at the start of all (emit_entry_code()) lies `offset` bytes before it.
     Emitter(const Layout& layout, std::uint8_t* where, std::size_t room, std::size_t offset);
 
-    /// Offsets of what every block shares, from the start of all code.
-    struct Shared {
-        std::uint32_t no_entry = 0, enter = 0, leave = 0;
-    };
-    /// The code at the start: what the unused entries (0) lead to, the way in and out.
-    Shared emit_entry_code();
-    std::size_t size() const { return getSize(); }
-
     /// Translates from program word `index` on. False if not even one operation could be.
     bool emit_block(Machine& m, std::uint32_t index, const Shared& shared);
-    /// Program words that the outcome rests on.
-    std::uint32_t words() const { return words_; }
 
   private:
-    enum class Flow : std::uint8_t { Unknown, Next, Ended };
-    static constexpr std::uint32_t kMostOperations = 32;
     /// A longer block would more often be cut by the limit.
     static constexpr std::uint32_t kMostCycles = 48;
 
     // block.cpp
     struct Step {
         const Op* op = nullptr;
-        std::uint32_t index = 0;
+        std::uint32_t words = 1;
         std::uint8_t live = 0;  ///< flags that somebody may read behind it
     };
+    void load_registers() override;
+    bool goes_on() const override { return steps_ < plan_.size(); }
+    Flow emit_next() override;
+    void settle() override;
+    std::function<void()> point() override;
     void gather(Machine& m, std::uint32_t index);
-    Flow emit(const Step& step);
-    void leave_before(std::uint32_t index, Left why);
-    void account(std::uint32_t cycles, std::uint32_t steps);
-    void go_to(std::uint32_t index);
-    const void* at_start(std::uint32_t offset);
-    /// What is to happen behind the block, with this point's flags and counts.
-    void cold(Xbyak::Label& label, std::function<void()> emit);
-    /// A label that leaves before the present operation.
-    Xbyak::Label& bail();
-    void finish_bail();
+    Flow emit(const Op* op);
 
     // flags.cpp
     struct Pending {
@@ -106,27 +87,11 @@ class Emitter : private Xbyak::CodeGenerator {
     void skip(const Op* op, bool when_zero);
 
     const Layout& layout_;
-    std::size_t offset_;
-    Shared shared_;
     std::vector<Step> plan_;
 
     // The block so far.
-    std::uint32_t start_ = 0;
-    Xbyak::Label entry_;
-    std::uint32_t words_ = 1;
     Pending pending_;
     std::uint8_t live_ = 0xFF;
-    std::uint32_t index_ = 0;   ///< program word of the present operation
-    std::uint32_t cycles_ = 0;  ///< from the block's start to the present operation
-    std::uint32_t steps_ = 0;   ///< operations before the present one
-    bool bailed_ = false;
-    Xbyak::Label bail_;
-    Pending bail_pending_;
-    struct Cold {
-        Xbyak::Label label;
-        std::function<void()> emit;
-    };
-    std::vector<Cold> cold_;
 };
 
 /// What an operation does to flags: those it reads, if of its own only those in `live` matter, and those it

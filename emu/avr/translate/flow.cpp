@@ -22,7 +22,7 @@ void Emitter::arrive(const Op*, std::uint32_t target) {
     cmp(word[rax + wait], 0);
     jne(waits);
     account(cycles_, steps_);
-    leave_before(index_, Left::Slow);
+    leave_before(index_, chip::Left::Slow);
     L(waits);
     dec(word[rax + wait]);
     L(done);
@@ -107,9 +107,7 @@ Emitter::Flow Emitter::emit_flow(const Op* op) {
         flush();
         account(cycles_ + op->cycles, steps_ + 1);
         mov(ecx, esi);
-        mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
-        add(rax, rdi);
-        jmp(rax);
+        go_to_ecx();
         return Flow::Ended;
     };
     using enum FormId;

@@ -3,17 +3,11 @@
 // program address and words.
 
 #include "emu/avr/machine/machine.h"
+#include "emu/chip/translate/left.h"
 
 namespace puckloop::avr::translate {
 
 class Library;
-
-/// Why translated code came back. Machine::current is the next operation.
-enum class Left : int {
-    NoEntry,  ///< it does not begin a block (yet)
-    Slow,     ///< the interpreter executes it, then translated code may go on
-    Limit,    ///< too little time for the block
-};
 
 /// No block rests on more program words.
 inline constexpr std::uint32_t kMostWords = 80;
@@ -24,6 +18,6 @@ Library* library_for(const Machine& m);
 /// Offset of the code for the block at program word `index`, made if need be; 0: there can be none.
 std::uint32_t block_at(Library& library, Machine& m, std::uint32_t index);
 /// Executes from that block on.
-Left enter(const Library& library, Machine& m, std::uint32_t block);
+chip::Left enter(const Library& library, Machine& m, std::uint32_t block);
 
 }  // namespace puckloop::avr::translate

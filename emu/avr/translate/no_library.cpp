@@ -12,8 +12,8 @@ std::uint32_t block_at(Library&, Machine&, std::uint32_t) {
     return 0;
 }
 
-Left enter(const Library&, Machine&, std::uint32_t) {
-    return Left::Slow;
+chip::Left enter(const Library&, Machine&, std::uint32_t) {
+    return chip::Left::Slow;
 }
 
 }  // namespace puckloop::avr::translate

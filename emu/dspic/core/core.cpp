@@ -1,7 +1,7 @@
 #include "emu/dspic/core/core.h"
 
 #include "base/error.h"
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 #include "emu/dspic/core/run.h"
 #include "emu/dspic/fast/idle_loops.h"
 #include "emu/dspic/fast/known_services.h"

@@ -76,7 +76,7 @@ class Core {
     /// Busy-wait loops are skipped without changing anything observable. On from the start.
     void set_skip_idle(bool on);
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
-    /// default as emu/chip/translation_switch.h states.
+    /// default as emu/chip/translate/translation_switch.h states.
     void set_translate(bool on);
     /// Instructions do what these say; none from the start.
     void set_errata(const Errata& errata);

@@ -272,15 +272,16 @@ PathDomain::Value PathDomain::add(bool byte, bool sticky, Value a, Value b, bool
     return byte ? value(result.now & 0xFFu) : result;
 }
 
-PathDomain::Value PathDomain::logic(bool byte, std::uint32_t result) {
-    n_ = known(result & top(byte));
-    z_ = known((result & ones(byte)) == 0);
-    return value(result & ones(byte));
+PathDomain::Value PathDomain::logic(bool byte, const Value& result) {
+    const std::uint32_t number = word(result);
+    n_ = known(number & top(byte));
+    z_ = known((number & ones(byte)) == 0);
+    return value(number & ones(byte));
 }
 
 PathDomain::Value PathDomain::moved(bool byte, const Value& value) {
     if (byte || value.kind != Kind::Word) {
-        logic(byte, word(value));
+        logic(byte, value);
         return value;
     }
     moved_ = value;

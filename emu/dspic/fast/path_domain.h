@@ -6,6 +6,7 @@
 // leaves by an exception where the routine does more than a path can hold.
 
 #include "emu/dspic/fast/isr_path.h"
+#include "emu/dspic/machine/execute/number_operations.h"
 #include "emu/dspic/walk/symbolic_execution.h"
 
 #include <array>
@@ -15,7 +16,7 @@
 
 namespace puckloop::dspic {
 
-class PathDomain : public SymbolicRoutine<PathDomain> {
+class PathDomain : public SymbolicRoutine<PathDomain>, public NumberOperations<PathDomain> {
     friend SymbolicExecution<PathDomain>;
     friend SymbolicRoutine<PathDomain>;
 
@@ -77,8 +78,8 @@ class PathDomain : public SymbolicRoutine<PathDomain> {
     void set_c(bool on) { c_ = known(on); }
     void set_z(bool on) { z_ = known(on); }
     Value add(bool byte, bool sticky, Value a, Value b, bool carry);
-    Value logic(bool byte, std::uint32_t result);
-    Value shifted(bool byte, std::uint32_t result, bool out) {
+    Value logic(bool byte, const Value& result);
+    Value shifted(bool byte, const Value& result, bool out) {
         set_c(out);
         return logic(byte, result);
     }

@@ -5,6 +5,7 @@
 // can say.
 
 #include "emu/dspic/fast/isr_summary.h"
+#include "emu/dspic/machine/execute/number_operations.h"
 #include "emu/dspic/walk/symbolic_execution.h"
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace puckloop::dspic {
 
-class SymbolicIsr : public SymbolicRoutine<SymbolicIsr> {
+class SymbolicIsr : public SymbolicRoutine<SymbolicIsr>, public NumberOperations<SymbolicIsr> {
     friend SymbolicExecution<SymbolicIsr>;
     friend SymbolicRoutine<SymbolicIsr>;
 
@@ -68,8 +69,8 @@ class SymbolicIsr : public SymbolicRoutine<SymbolicIsr> {
     void set_c(bool) {}
     void set_z(bool) {}
     Value add(bool, bool, Value, Value, bool) { throw Stop{}; }
-    Value logic(bool byte, std::uint32_t result) { return value(result & ones(byte)); }
-    Value shifted(bool byte, std::uint32_t result, bool) { return value(result & ones(byte)); }
+    Value logic(bool byte, Value result) { return value(word(result) & ones(byte)); }
+    Value shifted(bool byte, Value result, bool) { return logic(byte, result); }
     Value moved(bool, Value value) { return value; }
 
     void clear_watchdog() { throw Stop{}; }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "emu/chip/translated.h"
+#include "emu/chip/translate/translated.h"
 
 namespace puckloop::dspic {
 

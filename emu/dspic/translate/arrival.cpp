@@ -75,7 +75,7 @@ void Emitter::arrive(std::uint32_t extra_cycles) {
     add(rcx, static_cast<std::uint32_t>(index_ * sizeof(Op)));
     mov(r8d, index_);
     lea(rdx, ptr[rbx + static_cast<int>(cycles_ + extra_cycles)]);
-    call(at_start(shared_.arrival));
+    call(at_start(shared_.own));
     jc(bail(), T_NEAR);
 }
 

@@ -1,26 +1,22 @@
 #pragma once
-// Machine code for one block of operations, x86-64. Host registers:
-//   rbp  &Machine::st        rbx  cycle at the block's start   r13  instructions executed before it
-//   r12  data RAM            r14d Machine::watch               r15  entries by program word
-//   rdi  start of all code   r8d, r9d, r10d adder's operands and sum; r11d a result; esi a carry (flags.h)
-//   rax, rcx, rdx            scratch
-// W registers, SR and RAM stay in memory. Nothing is called from here and no stack frame is made but the
-// entry code's, so that no exception ever passes through. Whatever is not plain leaves the block before the
-// instruction: the interpreter executes it.
+// What a block's machine code (emu/chip/translate/block_emitter.h) is made of for the dsPIC. Host registers
+// beside those of every family:
+//   rbp  &Machine::st        r13  instructions executed before the block
+//   r12  data RAM            r14d Machine::watch
+//   r8d, r9d, r10d adder's operands and sum; r11d a result; esi a carry (flags.h)
+// W registers, SR and RAM stay in memory.
 
+#include "emu/chip/translate/block_emitter.h"
 #include "emu/dspic/translate/flags.h"
 #include "emu/dspic/translate/layout.h"
 #include "emu/dspic/translate/library.h"
 
-#include <xbyak/xbyak.h>
-
 #include <functional>
 #include <optional>
-#include <vector>
 
 namespace puckloop::dspic::translate {
 
-class Emitter : private Xbyak::CodeGenerator {
+class Emitter : public chip::BlockEmitter {
   public:
     /// Words behind a block that it looks at: where a skip leads depends on them.
     static constexpr std::uint32_t kLookedAt = 2;
@@ -28,39 +24,28 @@ class Emitter : private Xbyak::CodeGenerator {
     /// Writes to `where`. The code at the start of all (emit_entry_code()) lies `offset` bytes before it.
     Emitter(const Layout& layout, std::uint8_t* where, std::size_t room, std::size_t offset);
 
-    /// Offsets of what every block shares, from the start of all code.
-    struct Shared {
-        std::uint32_t no_entry = 0, enter = 0, leave = 0, arrival = 0;
-    };
-    /// The code at the start: what the unused entries (0) lead to, the way in and out, arrivals at branches.
-    Shared emit_entry_code();
-    std::size_t size() const { return getSize(); }
-
-    /// Translates from program word `index` on. False if not even one operation could be.
+    /// Translates from program word `index` on. False if not even one operation could be. The words that it
+    /// rests on include the ones looked at.
     bool emit_block(Machine& m, std::uint32_t index, const Shared& shared);
-    /// Program words that the outcome rests on, the ones looked at included.
-    std::uint32_t words() const { return words_; }
 
   private:
-    enum class Flow : std::uint8_t { Unknown, Next, Ended };
     static constexpr int kRamStart = 0x0800;
-    static constexpr std::uint32_t kMostOperations = 32;
     /// A longer block would more often be cut by the limit.
     static constexpr std::uint32_t kMostCycles = 32;
 
     // block.cpp
-    Flow emit(Machine& m, const Op* op);
-    /// The instruction cannot be finished here: the label leads out before it. Nothing has changed yet.
-    Xbyak::Label& bail();
-    /// What emits a way out before the present instruction, where these flags hold.
-    std::function<void()> leaving(const Flags& flags);
-    void finish_bail();
+    void load_registers() override;
+    void store_registers() override;
+    void emit_own() override { emit_arrival(); }
+    void emit_head(Xbyak::Label& late) override;
+    bool goes_on() const override { return steps_ < kMostOperations && cycles_ < kMostCycles; }
+    Flow emit_next() override;
+    void settle() override;
+    std::function<void()> point() override;
+    Flow emit(const Op* op);
     void finish_step(const Op* op);
-    void leave_before(std::uint32_t index, Left why);
     /// Counts the cycles and steps since the block's start, and what they do to Machine::watch.
     void account(std::uint32_t cycles, std::uint32_t steps, std::uint32_t keep, std::uint32_t writes);
-    void go_to(std::uint32_t index);
-    const void* at_start(std::uint32_t offset);
 
     // flags.cpp
     /// Puts into SR what is not there yet. Uses eax, ecx, edx.
@@ -77,35 +62,21 @@ class Emitter : private Xbyak::CodeGenerator {
     Xbyak::Address w_byte(int reg) { return byte[rbp + (layout_.w + 2 * reg)]; }
     Xbyak::Address w_double(int reg) { return dword[rbp + (layout_.w + 2 * reg)]; }
     void load_w(const Xbyak::Reg32& to, int reg, bool byte_size);
-    /// The low byte alone with `byte_size`; bit 0 of W15 stays 0 (that uses eax).
-    void store_w(int reg, const Xbyak::Reg32& from, bool byte_size);
     /// Checks the data address in eax plus `disp`: the index into RAM (of words, or bytes), or out.
     void ram_index(const Xbyak::Reg32& index, int disp, bool byte_size, bool stack, int words = 1);
-    Xbyak::Address ram_cell(const Xbyak::Reg64& index, bool byte_size);
     /// A literal address in RAM; false if it is elsewhere.
     bool ram_literal(std::uint32_t address, bool byte_size, int& displacement) const;
     Xbyak::Address file_cell(int displacement, bool byte_size);
-    void store_file(int displacement, const Xbyak::Reg32& from, bool byte_size);
-    void source_index(const Op* op, const Xbyak::Reg32& index, bool byte_size, int words = 1);
-    /// The same into ecx for an operand that is only read.
-    void read_index(const Op* op, bool byte_size);
-    void destination_index(const Op* op, const Xbyak::Reg32& index, bool byte_size, int words = 1);
-    void step_pointer(int reg, int step, bool byte_size);
-    void move_source(const Op* op, bool byte_size);
-    void move_destination(const Op* op, bool byte_size);
-    static bool can_reach(const Op* op);
-    /// Checks the operands in RAM: index of the source in ecx, of the destination in edx. Uses eax.
-    void reach(const Op* op, bool byte_size);
-    void load_source(const Op* op, const Xbyak::Reg32& to, bool byte_size);
-    void store_destination(const Op* op, const Xbyak::Reg32& from, bool byte_size);
 
     // registers.cpp
     void jump_unless_plain(Xbyak::Label& out, std::uint32_t cycles);
     /// As ram_index() into ecx for what is only read: leads to registers, too. Uses rax and rdx.
     void readable_index(int disp, bool byte_size);
-    bool can_read_literal(std::uint32_t address, bool byte_size) const;
-    /// Emits the check that reading is a look at what the address returned leads to. Uses rax, rcx and rdx.
-    Xbyak::Address read_literal(std::uint32_t address, bool byte_size);
+    bool can_read_plain(std::uint32_t address, bool byte_size) const;
+    /// Emits the check that reading this register is a look at plain_cell(), now. Uses rax, rcx and rdx.
+    void check_plain(std::uint32_t address);
+    /// By rcx, as check_plain() leaves it.
+    Xbyak::Address plain_cell(std::uint32_t address, bool byte_size);
     /// A register of the core's own that is a field and nothing else.
     struct CoreRegister {
         int place = 0;  ///< from Machine::st
@@ -114,54 +85,10 @@ class Emitter : private Xbyak::CodeGenerator {
     std::optional<CoreRegister> core_register(std::uint32_t address) const;
     bool emit_clear_flag(const Op* op);
 
-    // alu.cpp
-    enum class Sum : std::uint8_t { Add, AddC, Sub, SubB, SubR, SubBR };
-    enum class Logic : std::uint8_t { And, Ior, Xor };
-    struct Two {
-        bool sum = false;
-        Sum adder{};
-        Logic logic{};
-    };
-    enum class One : std::uint8_t {
-        Inc,
-        Inc2,
-        Dec,
-        Dec2,
-        Neg,
-        Com,
-        Sl,
-        Lsr,
-        Asr,
-        Rlnc,
-        Rlc,
-        Rrnc,
-        Rrc,
-        Clear,
-        Set
-    };
-    enum class Shape : std::uint8_t { File, FileToW0, LiteralToW, Pointers };
-    static std::optional<Two> two_operands(FormId form);
-    static std::optional<One> one_operand(FormId form);
-    static Shape shape_of(const Op* op);
-    static bool takes_carry(const Two& two);
-    /// Where combine() wants the base operand (Wb or f) and the other one.
-    Xbyak::Reg32 base_register(const Two& two);
-    Xbyak::Reg32 other_register(const Two& two);
-    Xbyak::Reg32 combine(const Two& two, bool byte_size);
-    void add_constant(std::uint32_t constant, int carry, bool byte_size);
-    bool emit_alu(const Op* op);
-    bool emit_two_operands(const Op* op, const Two& two);
-    bool emit_one_operand(const Op* op);
-
-    // shift.cpp, move.cpp, bits.cpp: false, and nothing emitted, for what they do not translate.
-    Xbyak::Reg32 apply(One one, bool byte_size);
-    bool emit_shift(const Op* op);
-    bool emit_multiply(const Op* op);
-    bool emit_move(const Op* op);
-    bool emit_frame(const Op* op);
-    bool emit_bits(const Op* op);
-    bool emit_bit_test(const Op* op);
-    void bit_to_z(std::uint32_t mask);
+    // recipe_code.cpp
+    friend class RecipeCode;
+    /// False, and nothing emitted, for what is not translated.
+    bool emit_recipe(const Op* op);
 
     // arrival.cpp
     void emit_arrival();
@@ -170,44 +97,24 @@ class Emitter : private Xbyak::CodeGenerator {
     // flow.cpp
     void leave_taken(const Op* op, std::uint32_t target, std::uint32_t extra_cycles);
     void side_exit(const Op* op, int host_condition, std::uint32_t target, std::uint32_t extra_cycles);
-    Flow emit_flow(Machine& m, const Op* op);
+    Flow emit_flow(const Op* op);
     Flow end_block(const Op* op);
     void emit_call(const Op* op);
     void emit_return(const Op* op);
     void emit_return_from_interrupt(const Op* op);
     /// Out if any interrupt or trap is requested, whatever its priority.
     void bail_if_requested();
-    bool emit_skip(Machine& m, const Op* op);
-
-    struct Cold {
-        Xbyak::Label label;
-        std::function<void()> emit;
-    };
-    /// Emitted behind the block.
-    void cold(const Xbyak::Label& label, std::function<void()> emit) {
-        cold_.push_back({label, std::move(emit)});
-    }
 
     const Layout& layout_;
-    std::size_t offset_;
-    Shared shared_;
-    const Machine* machine_ = nullptr;  ///< whose program it is
+    Machine* machine_ = nullptr;  ///< whose program it is
 
     // The block so far.
-    std::uint32_t start_ = 0;
-    Xbyak::Label entry_;
-    std::uint32_t words_ = 1 + kLookedAt;
     Flags flags_;
-    std::uint32_t index_ = 0;   ///< program word of the present operation
-    std::uint32_t cycles_ = 0;  ///< from the block's start to the present operation
-    std::uint32_t steps_ = 0;   ///< operations before the present one
-    std::uint32_t stall_ = 0;   ///< cycles, of the present one
+    std::uint32_t stall_ = 0;  ///< cycles, of the present one
     std::uint32_t keep_ = 0xFFFFFFFF;
     std::uint32_t writes_ = 0;  ///< of the operation before
-    bool bailed_ = false;
-    Xbyak::Label bail_;
-    Flags bail_flags_;
-    std::vector<Cold> cold_;
+    std::uint32_t needs_ = 0;   ///< pointers that must have been written at its start
+    std::size_t needs_at_ = 0;  ///< where the code has them
 };
 
 }  // namespace puckloop::dspic::translate

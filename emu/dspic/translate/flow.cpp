@@ -1,4 +1,4 @@
-// Branches, skips, calls and returns, and what happens at a taken backward branch (idle_loops.h,
+// Branches, calls and returns, and what happens at a taken backward branch (idle_loops.h,
 // wait_watch.h).
 
 #include "emu/dspic/machine/exception_frame.h"
@@ -38,7 +38,6 @@ std::optional<Condition> condition_of(FormId form) {
     }
 }
 
-constexpr int kHostLess = 12, kHostGreater = 15, kHostEqual = 4, kHostNotEqual = 5;
 /// Pushed by CALL and RCALL: two words.
 constexpr int kReturnBytes = 4;
 
@@ -53,18 +52,10 @@ void Emitter::leave_taken(const Op* op, std::uint32_t target, std::uint32_t extr
 void Emitter::side_exit(const Op* op, int host_condition, std::uint32_t target, std::uint32_t extra_cycles) {
     Xbyak::Label taken;
     jump_if(host_condition, taken);
-    cold(taken, [this, op, target, extra_cycles, flags = flags_, cycles = cycles_, steps = steps_,
-                 keep = keep_, stall = stall_] {
-        flags_ = flags;
-        cycles_ = cycles;
-        steps_ = steps;
-        keep_ = keep;
-        stall_ = stall;
-        leave_taken(op, target, extra_cycles);
-    });
+    cold(taken, [this, op, target, extra_cycles] { leave_taken(op, target, extra_cycles); });
 }
 
-Emitter::Flow Emitter::emit_flow(Machine& m, const Op* op) {
+Emitter::Flow Emitter::emit_flow(const Op* op) {
     const std::optional<Condition> condition_wanted = condition_of(op->form);
     const std::uint32_t target = op->target / 2;
     // Longer ones never skip; may_skip decides which of the others do.
@@ -123,9 +114,7 @@ Emitter::Flow Emitter::emit_flow(Machine& m, const Op* op) {
         finish_step(op);
         return Flow::Next;
     default:
-        if (!emit_skip(m, op)) return Flow::Unknown;
-        finish_step(op);
-        return Flow::Next;
+        return Flow::Unknown;
     }
 }
 
@@ -163,9 +152,7 @@ void Emitter::emit_return(const Op* op) {
     finish_bail();
     add(w_word(15), -kReturnBytes);
     account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
-    mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
-    add(rax, rdi);
-    jmp(rax);
+    go_to_ecx();
 }
 
 void Emitter::bail_if_requested() {
@@ -202,49 +189,7 @@ void Emitter::emit_return_from_interrupt(const Op* op) {
     add(w_word(15), -kReturnBytes);
     mov(byte[rbp + layout_.repeat_first], 1);
     account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
-    mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
-    add(rax, rdi);
-    jmp(rax);
-}
-
-bool Emitter::emit_skip(Machine& m, const Op* op) {
-    int host = kHostNotEqual;
-    const std::uint32_t over = is_two_words(m.code[index_ + 1].word) ? 2 : 1;
-    if (index_ + 1 + over >= layout_.code_words) return false;
-    switch (op->form) {
-    case FormId::BTSS_f_bit4:
-    case FormId::BTSC_f_bit4: {
-        if (!can_read_literal(op->k, true)) return false;
-        test(read_literal(op->k, true), op->aux);
-        if (op->form == FormId::BTSC_f_bit4) host ^= 1;
-        break;
-    }
-    case FormId::BTSS_Ws_bit4:
-    case FormId::BTSC_Ws_bit4:
-        if (op->source == Ea::Indirect) read_index(op, false);
-        load_source(op, eax, false);
-        move_source(op, false);
-        test(eax, op->k);
-        if (op->form == FormId::BTSC_Ws_bit4) host ^= 1;
-        break;
-    case FormId::CPSEQ_Wb_Wn:
-    case FormId::CPSNE_Wb_Wn:
-    case FormId::CPSGT_Wb_Wn:
-    case FormId::CPSLT_Wb_Wn:
-        if (op->byte)
-            mov(al, w_byte(op->b)), cmp(al, w_byte(op->s));
-        else
-            mov(ax, w_word(op->b)), cmp(ax, w_word(op->s));
-        host = op->form == FormId::CPSEQ_Wb_Wn   ? kHostEqual
-               : op->form == FormId::CPSNE_Wb_Wn ? kHostNotEqual
-               : op->form == FormId::CPSGT_Wb_Wn ? kHostGreater
-                                                 : kHostLess;
-        break;
-    default:
-        return false;
-    }
-    side_exit(op, host, index_ + 1 + over, over);
-    return true;
+    go_to_ecx();
 }
 
 }  // namespace puckloop::dspic::translate

@@ -1,6 +1,6 @@
 #include "emu/dspic/translate/library.h"
 
-#include "emu/chip/code_library.h"
+#include "emu/chip/translate/code_library.h"
 #include "emu/dspic/translate/emitter.h"
 
 namespace puckloop::dspic::translate {
@@ -49,8 +49,8 @@ std::uint32_t block_at(Library& library, Machine& m, std::uint32_t index) {
     return library.block_at(m, index);
 }
 
-Left enter(const Library& library, Machine& m, std::uint32_t block) {
-    return static_cast<Left>(library.enter(m, block));
+chip::Left enter(const Library& library, Machine& m, std::uint32_t block) {
+    return static_cast<chip::Left>(library.enter(m, block));
 }
 
 }  // namespace puckloop::dspic::translate

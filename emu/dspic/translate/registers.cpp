@@ -44,7 +44,7 @@ void Emitter::readable_index(int disp, bool byte_size) {
     jae(elsewhere, T_NEAR);
     L(back);
     // To a register the index leads all the same: backwards from RAM.
-    cold(elsewhere, [this, disp, byte_size, back, cycles = cycles_, leave = leaving(flags_)] {
+    cold(elsewhere, [this, disp, byte_size, back] {
         Xbyak::Label out;
         lea(ecx, ptr[rax + disp]);
         movzx(ecx, cx);
@@ -57,30 +57,30 @@ void Emitter::readable_index(int disp, bool byte_size) {
         mov(edx, ecx);
         shr(edx, 1);
         mov(rax, qword[rbp + layout_.plain]);
-        jump_unless_plain(out, cycles);
+        jump_unless_plain(out, cycles_);
         mov(rax, qword[rbp + layout_.plain]);
         lea(rcx, ptr[rax + rcx + kValue]);
         sub(rcx, r12);
         if (!byte_size) sar(rcx, 1);
         jmp(back, T_NEAR);
         L(out);
-        leave();
+        leave_unchanged();
     });
 }
 
-bool Emitter::can_read_literal(std::uint32_t address, bool byte_size) const {
-    int file = 0;
-    if (ram_literal(address, byte_size, file)) return true;
+bool Emitter::can_read_plain(std::uint32_t address, bool byte_size) const {
     return address < kRamStart && (byte_size || address % 2 == 0) &&
            machine_->plain->kind[address / 2] != Plain::kNever;
 }
 
-Xbyak::Address Emitter::read_literal(std::uint32_t address, bool byte_size) {
-    if (int file = 0; ram_literal(address, byte_size, file)) return file_cell(file, byte_size);
+void Emitter::check_plain(std::uint32_t address) {
     mov(rax, qword[rbp + layout_.plain]);
     mov(edx, address / 2);
     jump_unless_plain(bail(), cycles_);
     mov(rcx, qword[rbp + layout_.plain]);
+}
+
+Xbyak::Address Emitter::plain_cell(std::uint32_t address, bool byte_size) {
     const int at = kValue + static_cast<int>(address);
     return byte_size ? byte[rcx + at] : word[rcx + at];
 }

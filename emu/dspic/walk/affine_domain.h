@@ -4,6 +4,7 @@
 // registers are cells; a register of a module is a constant that the plan polls. What cannot be followed ends
 // the walk.
 
+#include "emu/dspic/machine/execute/number_operations.h"
 #include "emu/dspic/walk/loop_plan.h"
 #include "emu/dspic/walk/symbolic_execution.h"
 
@@ -11,7 +12,7 @@
 
 namespace puckloop::dspic {
 
-class AffineDomain : public SymbolicExecution<AffineDomain> {
+class AffineDomain : public SymbolicExecution<AffineDomain>, public NumberOperations<AffineDomain> {
     friend SymbolicExecution<AffineDomain>;
 
   public:
@@ -78,8 +79,8 @@ class AffineDomain : public SymbolicExecution<AffineDomain> {
     void set_c(bool on) { c_ = {true, on}; }
     void set_z(bool on) { z_ = {true, on}; }
     Value add(bool byte, bool sticky, Value a, Value b, bool carry);
-    Value logic(bool byte, std::uint32_t result) { return moved(byte, value(result & ones(byte))); }
-    Value shifted(bool byte, std::uint32_t result, bool out) {
+    Value logic(bool byte, Value result) { return moved(byte, value(word(result) & ones(byte))); }
+    Value shifted(bool byte, Value result, bool out) {
         set_c(out);
         return logic(byte, result);
     }

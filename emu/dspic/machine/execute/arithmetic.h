@@ -46,19 +46,19 @@ struct SubBR {
 struct And {
     template <class D, class V>
     static V apply(D& d, bool byte, V b, V s) {
-        return d.logic(byte, d.word(b) & d.word(s));
+        return d.logic(byte, d.conjunction(b, s));
     }
 };
 struct Ior {
     template <class D, class V>
     static V apply(D& d, bool byte, V b, V s) {
-        return d.logic(byte, d.word(b) | d.word(s));
+        return d.logic(byte, d.disjunction(b, s));
     }
 };
 struct Xor {
     template <class D, class V>
     static V apply(D& d, bool byte, V b, V s) {
-        return d.logic(byte, d.word(b) ^ d.word(s));
+        return d.logic(byte, d.exclusive(b, s));
     }
 };
 
@@ -86,7 +86,7 @@ struct Neg {
 struct Com {
     template <class D, class V>
     static V apply(D& d, bool byte, V s) {
-        return d.logic(byte, d.word(s) ^ ones(byte));
+        return d.logic(byte, d.exclusive(s, d.value(ones(byte))));
     }
 };
 
@@ -161,17 +161,12 @@ template <Test Condition>
 struct CompareSkip {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const auto number = [&](int reg) {
-            const std::uint32_t word = d.word(d.part(reg, shape.byte));
-            return shape.byte ? static_cast<int>(static_cast<std::int8_t>(word))
-                              : static_cast<int>(static_cast<std::int16_t>(word));
-        };
-        const int b = number(op->b);
-        const int s = number(op->s);
-        if constexpr (Condition == Test::Equal) return d.skip_if(op, b == s);
-        if constexpr (Condition == Test::NotEqual) return d.skip_if(op, b != s);
-        if constexpr (Condition == Test::Greater) return d.skip_if(op, b > s);
-        if constexpr (Condition == Test::Less) return d.skip_if(op, b < s);
+        const auto b = d.part(op->b, shape.byte);
+        const auto s = d.part(op->s, shape.byte);
+        if constexpr (Condition == Test::Equal) return d.skip_if(op, d.equal(shape.byte, b, s));
+        if constexpr (Condition == Test::NotEqual) return d.skip_if(op, !d.equal(shape.byte, b, s));
+        if constexpr (Condition == Test::Greater) return d.skip_if(op, d.less(shape.byte, s, b));
+        if constexpr (Condition == Test::Less) return d.skip_if(op, d.less(shape.byte, b, s));
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
         bind_base(op, form, word);

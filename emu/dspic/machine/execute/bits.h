@@ -33,10 +33,9 @@ template <Action What>
 struct ChangeBit {
     template <class D, class V>
     static V apply(D& d, V value, std::uint32_t mask) {
-        const std::uint32_t word = d.word(value);
-        if constexpr (What == Action::Set) return d.value(word | mask);
-        if constexpr (What == Action::Clear) return d.value(word & ~mask);
-        if constexpr (What == Action::Toggle) return d.value(word ^ mask);
+        if constexpr (What == Action::Set) return d.disjunction(value, d.value(mask));
+        if constexpr (What == Action::Clear) return d.conjunction(value, d.value(~mask & 0xFFFF));
+        if constexpr (What == Action::Toggle) return d.exclusive(value, d.value(mask));
     }
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
@@ -64,7 +63,7 @@ struct ChangeFileBit {
 
 /// C = bit, or Z = not bit.
 template <bool ToC, class D>
-void set_tested(D& d, bool bit) {
+void set_tested(D& d, typename D::Bit bit) {
     if constexpr (ToC)
         d.set_c(bit);
     else
@@ -78,11 +77,11 @@ struct TestBit {
     static const Op* run(D& d, const Op* op, Shape shape) {
         if constexpr (ThenSet) {
             change_source(d, op, shape, [&](auto value) {
-                set_tested<ToC>(d, d.word(value) & op->k);
+                set_tested<ToC>(d, d.bit(value, op->k));
                 return ChangeBit<Action::Set>::apply(d, value, op->k);
             });
         } else {
-            set_tested<ToC>(d, d.word(d.source(op, shape)) & op->k);
+            set_tested<ToC>(d, d.bit(d.source(op, shape), op->k));
         }
         return op + 1;
     }
@@ -96,8 +95,9 @@ template <bool ToC>
 struct TestBitByW {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const std::uint32_t bit = d.word(d.whole(op->b)) & 15;  // read before the source pointer moves
-        set_tested<ToC>(d, d.word(d.source(op, shape)) >> bit & 1);
+        // Read before the source pointer moves.
+        const auto place = d.conjunction(d.whole(op->b), d.value(15));
+        set_tested<ToC>(d, d.bit(d.right(d.source(op, shape), place), 1));
         return op + 1;
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
@@ -110,7 +110,7 @@ struct TestFileBit {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape) {
         const auto value = d.load(d.address(op->k), true);
-        d.set_z(!(d.word(value) & op->aux));
+        d.set_z(!d.bit(value, op->aux));
         if constexpr (ThenSet)
             d.store(d.address(op->k), true, ChangeBit<Action::Set>::apply(d, value, op->aux));
         return op + 1;
@@ -126,12 +126,9 @@ template <bool FromC>
 struct WriteBit {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const std::uint32_t mask = 1u << (d.word(d.whole(op->b)) & 15);
-        const bool bit = FromC ? d.c() : !d.z();
-        change_source(d, op, shape, [&](auto value) {
-            const std::uint32_t word = d.word(value);
-            return d.value(bit ? word | mask : word & ~mask);
-        });
+        const auto place = d.conjunction(d.whole(op->b), d.value(15));
+        const auto bit = FromC ? d.c() : !d.z();
+        change_source(d, op, shape, [&](auto value) { return d.with_bit(value, place, bit); });
         return op + 1;
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
@@ -144,7 +141,7 @@ template <bool IfSet>
 struct SkipOnBit {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const bool bit = d.word(d.source(op, shape)) & op->k;
+        const auto bit = d.bit(d.source(op, shape), op->k);
         return d.skip_if(op, bit == IfSet);
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
@@ -156,7 +153,7 @@ template <bool IfSet>
 struct SkipOnFileBit {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape) {
-        const bool bit = d.word(d.load(d.address(op->k), true)) & op->aux;
+        const auto bit = d.bit(d.load(d.address(op->k), true), op->aux);
         return d.skip_if(op, bit == IfSet);
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {

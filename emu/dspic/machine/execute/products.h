@@ -6,24 +6,16 @@
 
 namespace puckloop::dspic {
 
-/// The product's low word goes to the even register; flags stay.
-template <class D>
-void put_product(D& d, int reg, std::uint32_t product) {
-    d.set_whole(reg, d.value(product & 0xFFFF));
-    d.set_whole(reg + 1, d.value(product >> 16));
-}
+// The product's low word goes to the even register; flags stay.
 
 /// MUL.SS, SU, US, UU of Wb and Ws or #lit5.
 template <bool SignedB, bool SignedS>
 struct Multiply {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const auto number = [](bool is_signed, std::uint32_t w) {
-            return is_signed ? static_cast<std::int64_t>(static_cast<std::int16_t>(w)) : std::int64_t{w};
-        };
-        const std::uint32_t b = d.word(d.whole(op->b));
-        const std::uint32_t s = d.word(d.source(op, shape));
-        put_product(d, op->d, static_cast<std::uint32_t>(number(SignedB, b) * number(SignedS, s)));
+        const auto b = d.whole(op->b);
+        const auto s = d.source(op, shape);
+        d.set_pair(op->d, d.product(SignedB, b, SignedS, s));
         return op + 1;
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
@@ -38,12 +30,12 @@ struct Multiply {
 struct MultiplyFile {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const std::uint32_t f = d.word(d.load(d.address(op->k), shape.byte));
-        const std::uint32_t product = f * d.word(d.part(0, shape.byte));
+        const auto f = d.load(d.address(op->k), shape.byte);
+        const auto product = d.product(false, f, false, d.part(0, shape.byte));
         if (shape.byte)
-            d.set_whole(2, d.value(product));
+            d.set_whole(2, d.low(product));
         else
-            put_product(d, 2, product);
+            d.set_pair(2, product);
         return op + 1;
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {

@@ -11,51 +11,44 @@ namespace puckloop::dspic {
 // By one bit: C is the bit shifted out; OV and DC stay. Rotates not through C leave C alone.
 struct Sl {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.shifted(byte, s << 1, s & top(byte));
+    static V apply(D& d, bool byte, V s) {
+        return d.shifted(byte, d.doubled(byte, s, false), d.bit(s, top(byte)));
     }
 };
 struct Lsr {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.shifted(byte, s >> 1, s & 1);
+    static V apply(D& d, bool byte, V s) {
+        return d.shifted(byte, d.halved(byte, s, false), d.bit(s, 1));
     }
 };
 struct Asr {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.shifted(byte, s >> 1 | (s & top(byte)), s & 1);
+    static V apply(D& d, bool byte, V s) {
+        return d.shifted(byte, d.halved(byte, s, d.bit(s, top(byte))), d.bit(s, 1));
     }
 };
 struct Rlnc {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.logic(byte, s << 1 | (s & top(byte) ? 1u : 0u));
+    static V apply(D& d, bool byte, V s) {
+        return d.logic(byte, d.doubled(byte, s, d.bit(s, top(byte))));
     }
 };
 struct Rlc {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.shifted(byte, s << 1 | (d.c() ? 1u : 0u), s & top(byte));
+    static V apply(D& d, bool byte, V s) {
+        return d.shifted(byte, d.doubled(byte, s, d.c()), d.bit(s, top(byte)));
     }
 };
 struct Rrnc {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.logic(byte, s >> 1 | (s & 1 ? top(byte) : 0u));
+    static V apply(D& d, bool byte, V s) {
+        return d.logic(byte, d.halved(byte, s, d.bit(s, 1)));
     }
 };
 struct Rrc {
     template <class D, class V>
-    static V apply(D& d, bool byte, V value) {
-        const std::uint32_t s = d.word(value);
-        return d.shifted(byte, s >> 1 | (d.c() ? top(byte) : 0u), s & 1);
+    static V apply(D& d, bool byte, V s) {
+        return d.shifted(byte, d.halved(byte, s, d.c()), d.bit(s, 1));
     }
 };
 
@@ -65,13 +58,14 @@ template <Many Kind>
 struct ManyBits {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const std::uint32_t value = d.word(d.whole(op->b));
-        const std::uint32_t count = shape.source == Ea::Literal ? op->k : d.word(d.whole(op->s)) & 31;
-        std::uint32_t result = 0;
-        if constexpr (Kind == Many::Left) result = count > 15 ? 0 : value << count;
-        if constexpr (Kind == Many::Logical) result = value >> count;
-        if constexpr (Kind == Many::Arithmetic)
-            result = static_cast<std::uint32_t>(static_cast<std::int16_t>(value) >> count) & 0xFFFF;
+        const auto value = d.whole(op->b);
+        const auto count =
+            shape.source == Ea::Literal ? d.value(op->k) : d.conjunction(d.whole(op->s), d.value(31));
+        const auto result = [&] {
+            if constexpr (Kind == Many::Left) return d.left(value, count);
+            if constexpr (Kind == Many::Logical) return d.right(value, count);
+            if constexpr (Kind == Many::Arithmetic) return d.signed_right(value, count);
+        }();
         d.set_whole(op->d, d.logic(false, result));
         return op + 1;
     }
@@ -93,9 +87,9 @@ template <bool Signed>
 struct Extend {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const std::uint32_t s = d.word(d.source(op, AsByte<Shape>(shape)));
-        const bool negative = Signed && (s & 0x80);
-        d.set_whole(op->d, d.shifted(false, negative ? s | 0xFF00 : s, !negative));
+        const auto s = d.source(op, AsByte<Shape>(shape));
+        const auto extended = Signed ? d.sign_extended(s) : s;
+        d.set_whole(op->d, d.shifted(false, extended, !d.bit(extended, top(false))));
         return op + 1;
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
@@ -108,11 +102,7 @@ struct Extend {
 struct Swap {
     template <class D, class Shape>
     static const Op* run(D& d, const Op* op, Shape shape) {
-        const std::uint32_t w = d.word(d.whole(op->s));
-        if (shape.byte)  // nibbles of the low byte
-            d.put(op->s, true, d.value((w << 4 & 0xF0) | (w >> 4 & 0x0F)));
-        else
-            d.set_whole(op->s, d.value((w << 8 | w >> 8) & 0xFFFF));
+        d.put(op->s, shape.byte, d.swapped(shape.byte, d.whole(op->s)));
         return op + 1;
     }
     static void bind(Op& op, const Form& form, std::uint32_t word) {
@@ -143,7 +133,7 @@ struct DecimalAdjust {
     static const Op* run(D& d, const Op* op, Shape) {
         std::uint32_t t = d.word(d.part(op->s, true));
         if ((t & 0xF) > 9 || d.dc()) t += 0x06;
-        if (t > 0x9F || d.c()) t += 0x60;
+        if (t > 0x9F || d.decided(d.c())) t += 0x60;
         if (t > 0xFF)
             d.set_c(true);
         else if (d.daw_clears_carry())

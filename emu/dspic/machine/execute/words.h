@@ -1,21 +1,24 @@
 #pragma once
 // The domain of the interpreter: a value is a 16-bit word, and every effect happens to the machine.
 //
-// The instructions (arithmetic.h, shifts.h, moves.h, bits.h, branches.h) are templates over such a domain;
-// the loop walk (fast/symbolic_loop.h) and the summary of service routines (fast/symbolic_isr.h) are two
+// The instructions (arithmetic.h, shifts.h, moves.h, bits.h, branches.h, products.h) are templates over such
+// a domain; the loop walk (walk/symbolic_loop.h), the summary and the paths of service routines
+// (fast/symbolic_isr.h, fast/path_domain.h) and what the translator makes code of (translate/recipe.h) are
 // more. A domain has
 //   Value, Address    what a register or a memory word holds, and what reaches memory
+//   Bit, Product      yes or no; 32 bits
 //   value, word       from a number to a Value and back; a domain that does not know the number fails there
+//   conjunction, ...  operations on values (number_operations.h)
 //   whole, part, ...  registers; load, store, change: memory; source, destination: an operand of any mode
-//   c, z, n, ov       flags as bool; add, logic, shifted, set_c, set_z: what sets them
+//   c, z, n, ov       flags; add, logic, shifted, set_c, set_z: what sets them
 //   go, skip_if, ...  where execution continues, and what that costs
 // A domain that cannot follow an effect leaves by an exception of its own.
 
-#include "emu/dspic/machine/execute/shape.h"
+#include "emu/dspic/machine/execute/number_operations.h"
 
 namespace puckloop::dspic {
 
-class Words {
+class Words : public NumberOperations<Words> {
   public:
     using Value = std::uint32_t;
     using Address = std::uint16_t;

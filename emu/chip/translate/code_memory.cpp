@@ -1,4 +1,4 @@
-#include "emu/chip/code_memory.h"
+#include "emu/chip/translate/code_memory.h"
 
 #include "base/logs/log.h"
 

@@ -1,4 +1,4 @@
-#include "emu/chip/translation_switch.h"
+#include "emu/chip/translate/translation_switch.h"
 
 #include <atomic>
 

@@ -10,7 +10,7 @@
 //   may_begin(m, index)              whether a block may begin at that program word
 //   fits(m, index, words)            whether a block that rests on these words is still what is there
 
-#include "emu/chip/code_memory.h"
+#include "emu/chip/translate/code_memory.h"
 
 #include <cstddef>
 #include <cstdint>
