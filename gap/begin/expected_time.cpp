@@ -27,7 +27,7 @@ struct Cost {
 Cost cost_of(const Kind& kind) {
     switch (kind) {
     case Kind::Proximity:
-        return {{2.1, 0.95}, {3.5, 0.95}};
+        return {{0.45, 1.56}, {3.5, 0.95}};
     case Kind::Motion:
         return {{5.5, 0.8}, {6.4, 0.8}};
     case Kind::Rab:
