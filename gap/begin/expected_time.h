@@ -5,9 +5,12 @@
 
 namespace puckloop::gap {
 
-/// s of wall time, right within a factor of three or so: from the measured cost of a kind's rows
-/// (docs/gap.md).
-double expected_seconds(const Experiment& experiment, unsigned threads);
+/// s of wall time on an idle machine, from the measured cost of a kind's rows (docs/gap.md has how right).
+struct ExpectedTime {
+    double nothing = 0.0;    ///< where nothing is wrong
+    double something = 0.0;  ///< where causes and what is left are to be looked at
+};
+ExpectedTime expected_time(const Experiment& experiment, unsigned threads);
 
 /// s left at a share (0..1) of the work after `elapsed` s: the estimate first, then more and more what the
 /// work took.

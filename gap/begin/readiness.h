@@ -2,6 +2,7 @@
 // Is a folder ready for an analysis? What is wrong with it, what can be used with care, and what can be
 // learnt from it, without fitting anything.
 
+#include "gap/begin/expected_time.h"
 #include "gap/data/experiment.h"
 
 #include <filesystem>
@@ -19,7 +20,7 @@ struct Readiness {
     std::vector<std::string> looked_for;   ///< names of the catalogue's causes that can be tried
     std::map<std::string, std::vector<std::string>> blind;   ///< of the others, by why they cannot be found
     std::map<std::string, std::vector<std::string>> absent;  ///< that did not happen, by what shows it
-    double seconds = 0.0;  ///< expected for the verdict; 0 where it cannot be used
+    ExpectedTime seconds;                                    ///< for the verdict; 0 where it cannot be used
 };
 
 Readiness readiness_of(const std::filesystem::path& folder, unsigned threads);

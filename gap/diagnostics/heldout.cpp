@@ -54,6 +54,9 @@ void compare_errors(const std::vector<double>& before, const std::vector<double>
 HeldFigures held_figures(const Study& study, const Selection& selection, std::uint64_t seed) {
     const auto& observables = study.model().observables();
     const std::size_t units = study.blocks().count;
+    const HeldOut none = study.hold_out(selection.none, kHeldOut),
+                  chosen =
+                      selection.chosen.effects.empty() ? none : study.hold_out(selection.chosen, kHeldOut);
     std::vector<std::vector<double>> before(observables.size() + 1, std::vector<double>(units, 0.0)),
         after = before;
     std::vector<double> counts(units, 0.0);
@@ -63,8 +66,8 @@ HeldFigures held_figures(const Study& study, const Selection& selection, std::ui
                               : std::exp(selection.chosen.fitted.state.noise[o].log_sd);
         for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
             const std::uint32_t block = study.blocks().of[o][i];
-            const double old_error = observables[o].y[i] - selection.held_none.mean[o][i];
-            const double new_error = observables[o].y[i] - selection.held_chosen.mean[o][i];
+            const double old_error = observables[o].y[i] - none.mean[o][i];
+            const double new_error = observables[o].y[i] - chosen.mean[o][i];
             before[o][block] += old_error * old_error;
             after[o][block] += new_error * new_error;
             before.back()[block] += old_error * old_error / (sd * sd);
@@ -81,11 +84,11 @@ HeldFigures held_figures(const Study& study, const Selection& selection, std::ui
         compare(before[o], after[o], static_cast<double>(observables[o].y.size()), seed, one);
         figures.observables.push_back(std::move(one));
         for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
-            held.score_before += selection.held_none.score[o][i] / rows;
-            held.score_after += selection.held_chosen.score[o][i] / rows;
+            held.score_before += none.score[o][i] / rows;
+            held.score_after += chosen.score[o][i] / rows;
         }
     }
-    const Gain gain = study.gain(selection.held_none, selection.held_chosen);
+    const Gain gain = study.gain(none, chosen);
     held.score_low = (gain.sum - 1.645 * gain.sd) / rows;
     held.score_high = (gain.sum + 1.645 * gain.sd) / rows;
     held.runs = static_cast<int>(units);

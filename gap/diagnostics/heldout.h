@@ -21,7 +21,8 @@ struct HeldFigures {
 void compare_errors(const std::vector<double>& before, const std::vector<double>& after, double rows,
                     std::uint64_t seed, HeldObservable& to);
 
-/// `seed` of the bootstrap over blocks.
+/// Of the chosen causes over the simulator as it is, each fitted to all rows but those it is judged by, noise
+/// and all. `seed` of the bootstrap over blocks.
 HeldFigures held_figures(const Study& study, const Selection& selection, std::uint64_t seed);
 
 }  // namespace puckloop::gap

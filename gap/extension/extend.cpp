@@ -90,8 +90,8 @@ class Extending {
     void hold_out(std::size_t fold) {
         const Experiment& experiment = study_.experiment();
         const Model& model = looked_.model();
-        const auto none = looked_.values(study_.without_fold(fold, none_).state.values),
-                   named = looked_.values(study_.without_fold(fold, named_).state.values);
+        const auto none = looked_.values(without(fold, none_)),
+                   named = named_.effects == none_.effects ? none : looked_.values(without(fold, named_));
         const Prediction as_it_is = model.predicted(none), with_causes = model.predicted(named);
         const auto subjects = subjects_of(experiment, model, named, with_causes);
         for (std::size_t s = 0; s < subjects.size() && s < rows_.size(); ++s) {
@@ -116,6 +116,12 @@ class Extending {
                 rows_[s].cost_extended[i] = cost_extended[i];
             }
         }
+    }
+
+    /// Values that all rows but those of the fold have.
+    std::vector<double> without(std::size_t fold, const Fit& fit) const {
+        const bool any = !fit.freed.empty() || !study_.model().nuisances().empty();
+        return any ? study_.without_fold(fold, fit, kHeldOut).state.values : fit.fitted.state.values;
     }
 
     Extended judged(const Subject& subject, const HeldRows& rows, std::size_t asked,

@@ -33,15 +33,17 @@ constexpr int kRoundsOfSizes = 8;     // of sizes fitted together
 constexpr double kLeastSize = 1e-8;   // variance of a value over that of the errors, of its share in the rows
 constexpr std::size_t kFirst = 3;     // covariates that are looked at two by two for each sensor by itself
 
+using Axes = std::vector<const LaidAxis*>;  // of one table
+
 /// What one table's values make of the chosen rows, whitened: rows that feel it, and a column a value.
 struct TableDesign {
     std::vector<std::size_t> rows;  // of the chosen ones
     MatrixXd columns;
 };
 
-/// The same before it is whitened: all chosen rows.
+/// The same before it is whitened: all chosen rows. `axes`: the table's own.
 TableDesign plain_design(const Subject& subject, const LearningRows& chosen, const TableBasis& basis,
-                         std::size_t table) {
+                         std::size_t table, const Axes& axes) {
     const std::size_t n = chosen.row.size();
     TableDesign design;
     std::vector<char> own(n, 0);
@@ -55,7 +57,7 @@ TableDesign plain_design(const Subject& subject, const LearningRows& chosen, con
         const auto place = static_cast<Index>(k);
         if (subject.sums && k > 0 && chosen.starts[k] == 0) all.row(place) = all.row(place - 1);
         if (own[k] == 0) continue;
-        basis.of_row(subject, chosen.row[k], [&](std::size_t value, double weight) {
+        basis.of_row(subject, axes, chosen.row[k], [&](std::size_t value, double weight) {
             all(place, static_cast<Index>(value)) += weight;
         });
     }
@@ -206,7 +208,8 @@ MatrixXd covariance_of(const std::vector<LearntPart>& parts, const std::vector<M
 }
 
 Joint fit_together(const Subject& subject, const LearningRows& chosen, const ErrorsLaw& law,
-                   const std::vector<double>& error_now, std::vector<LearntPart>& parts) {
+                   const std::vector<double>& error_now, const std::vector<Axes>& axes,
+                   std::vector<LearntPart>& parts) {
     const Whitening whitening(law, chosen.known, chosen.starts);
     // Weights by what is left now; the values are fitted to the whole errors.
     const Innovated left = innovated(chosen, error_now, law, whitening);
@@ -219,11 +222,13 @@ Joint fit_together(const Subject& subject, const LearningRows& chosen, const Err
     MatrixXd all = MatrixXd::Zero(z.size(), width);
     std::vector<MatrixXd> roots;
     Index first = 0;
-    for (const LearntPart& part : parts) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        const LearntPart& part = parts[p];
         roots.push_back(part.basis.root(part.kernel));
         const auto m = static_cast<Index>(part.basis.values());
         for (std::size_t table = 0; table < part.basis.tables(); ++table, first += m) {
-            const TableDesign design = whitened(plain_design(subject, chosen, part.basis, table), whitening);
+            const TableDesign design =
+                whitened(plain_design(subject, chosen, part.basis, table, axes[p]), whitening);
             const MatrixXd columns = design.columns * roots.back();
             for (std::size_t k = 0; k < design.rows.size(); ++k)
                 all.block(static_cast<Index>(design.rows[k]), first, 1, m) =
@@ -379,7 +384,7 @@ class Learner {
         for (int round = 0; round < 2; ++round) {
             const auto left = left_beside(subject_, all, parts_);
             result.law = law_of(subject_.sums, left, all.known, all.starts);
-            Joint joint = fit_together(subject_, all, result.law, left, parts_);
+            Joint joint = fit_together(subject_, all, result.law, left, part_axes_, parts_);
             result.freedom = joint.freedom;
             result.covariance = std::move(joint.covariance);
         }
@@ -416,14 +421,15 @@ class Learner {
         const auto offer_of = [&](const TableShape& shape, std::size_t places, std::span<const double> each,
                                   const Kernel* only = nullptr) {
             Offer own;
-            const TableBasis basis(subject_, shape, laid_, places);
+            const TableBasis basis(axes_, shape, places);
             const std::size_t size = basis.values() * basis.tables();
             const bool there = std::ranges::any_of(
                 parts_, [&](const LearntPart& part) { return part.basis.shape() == shape; });
             if (there || basis.empty() || values() + size > kMostValues) return own;
+            const Axes axes = axes_of(shape, places);
             std::vector<TableDesign> tables;
             for (std::size_t table = 0; table < basis.tables(); ++table)
-                tables.push_back(plain_design(subject_, chosen_, basis, table));
+                tables.push_back(plain_design(subject_, chosen_, basis, table, axes));
             for (std::size_t s = 0; s < laws.size(); ++s)
                 weigh(basis, tables, only != nullptr ? std::vector{*only} : kernels_of(basis, each),
                       whitenings[s], innovations[s], {shape, places, s}, own);
@@ -436,7 +442,7 @@ class Learner {
         // One covariate is as likely beforehand as two, and each table of its like, and each kernel of it.
         const auto price = [&](const std::vector<TableShape>& like, const Offer& one) {
             if (one.places == 0) return 0.0;
-            const auto kernels = kernels_of(TableBasis(subject_, one.shape, laid_, one.places), kFineLengths);
+            const auto kernels = kernels_of(TableBasis(axes_, one.shape, one.places), kFineLengths);
             return std::log(2.0 * static_cast<double>(like.size() * kernels.size()));
         };
         const auto singles = single_shapes(subject_);
@@ -460,15 +466,23 @@ class Learner {
         if (pair.score > best.score) best = pair;
         const double gain = best.score - base;
         if (!(gain > kClearly)) return false;
-        parts_.push_back({TableBasis(subject_, best.shape, laid_, best.places), best.kernel, best.size});
+        parts_.push_back({TableBasis(axes_, best.shape, best.places), best.kernel, best.size});
+        part_axes_.push_back(axes_of(best.shape, best.places));
         ErrorsLaw law = laws[best.setting];
         for (int round = 0; round < 2; ++round) {
-            (void)fit_together(subject_, chosen_, law, error_, parts_);
+            (void)fit_together(subject_, chosen_, law, error_, part_axes_, parts_);
             error_ = left_beside(subject_, chosen_, parts_);
             law = law_ = law_of(subject_.sums, error_, chosen_.known, chosen_.starts);
         }
         evidence_ += gain;
         return true;
+    }
+
+    Axes axes_of(const TableShape& shape, std::size_t places) {
+        Axes axes;
+        for (const std::size_t c : shape.over)
+            axes.push_back(&axes_.axis(c, places));
+        return axes;
     }
 
     std::size_t values() const {
@@ -482,6 +496,8 @@ class Learner {
     const std::vector<char>& used_;
     LearningRows chosen_;
     std::vector<char> laid_;  // by which the places of tables are laid
+    LaidAxes axes_{subject_, laid_};
+    std::vector<Axes> part_axes_;
     ErrorsLaw law_;
     std::vector<double> error_;
     std::vector<LearntPart> parts_;

@@ -60,6 +60,14 @@ Axis places_round(std::size_t count) {
     return axis;
 }
 
+/// The place above a value, and the share of the way from the one below.
+std::pair<std::size_t, double> place_of(const std::vector<double>& at, double wanted) {
+    const double value = std::clamp(wanted, at.front(), at.back());
+    const auto above = std::clamp<std::size_t>(
+        static_cast<std::size_t>(std::ranges::upper_bound(at, value) - at.begin()), 1, at.size() - 1);
+    return {above, (value - at[above - 1]) / (at[above] - at[above - 1])};
+}
+
 double correlation(double distance, double length) {
     const double scaled = std::sqrt(3.0) * distance / length;
     return (1 + scaled) * std::exp(-scaled);
@@ -82,30 +90,41 @@ Eigen::MatrixXd covariance(const std::vector<double>& along, bool periodic, doub
 
 }  // namespace
 
-TableBasis::TableBasis(const Subject& subject, const TableShape& shape, const std::vector<char>& used,
-                       std::size_t most)
-    : shape_(shape) {
-    lay_places(subject, used, most);
-    if (shape.by_sensor) tables_ = static_cast<std::size_t>(subject.sensors);
-    if (shape.by_run && !subject.run.empty()) tables_ = *std::ranges::max_element(subject.run) + 1;
+const LaidAxis& LaidAxes::axis(std::size_t c, std::size_t most) {
+    const auto [place, fresh] = laid_.try_emplace({c, most});
+    LaidAxis& laid = place->second;
+    if (!fresh) return laid;
+    const WorldCovariate& covariate = subject_.covariates[c];
+    std::vector<double> values;
+    for (std::size_t i = 0; i < used_.size(); ++i)
+        for (std::size_t m = subject_.moments[i]; used_[i] != 0 && m < subject_.moments[i + 1]; ++m)
+            values.push_back(covariate.value[m]);
+    // Where other rows go nothing is known, and the table has to say so.
+    const auto [low, high] = std::ranges::minmax(covariate.value);
+    values.insert(values.end(), {low, high});
+    Axis axis = covariate.periodic ? places_round(most) : places_in(std::move(values), most);
+    laid.at = std::move(axis.at);
+    laid.along = std::move(axis.along);
+    if (laid.at.empty()) return laid;
+    for (const double value : covariate.value) {
+        const auto [above, share] = place_of(laid.at, value);
+        laid.above.push_back(static_cast<std::uint16_t>(above));
+        laid.share.push_back(share);
+    }
+    return laid;
 }
 
-void TableBasis::lay_places(const Subject& subject, const std::vector<char>& used, std::size_t most) {
-    for (const std::size_t c : shape_.over) {
-        const WorldCovariate& covariate = subject.covariates[c];
-        std::vector<double> values;
-        for (std::size_t i = 0; i < used.size(); ++i)
-            for (std::size_t m = subject.moments[i]; used[i] != 0 && m < subject.moments[i + 1]; ++m)
-                values.push_back(covariate.value[m]);
-        // Where other rows go nothing is known, and the table has to say so.
-        const auto [low, high] = std::ranges::minmax(covariate.value);
-        values.insert(values.end(), {low, high});
-        periodic_.push_back(covariate.periodic ? 1 : 0);
-        Axis axis = covariate.periodic ? places_round(most) : places_in(std::move(values), most);
+TableBasis::TableBasis(LaidAxes& axes, const TableShape& shape, std::size_t most) : shape_(shape) {
+    const Subject& subject = axes.subject();
+    for (const std::size_t c : shape.over) {
+        const LaidAxis& axis = axes.axis(c, most);
+        periodic_.push_back(subject.covariates[c].periodic ? 1 : 0);
         values_ *= axis.at.size();
-        places_.push_back(std::move(axis.at));
-        along_.push_back(std::move(axis.along));
+        places_.push_back(axis.at);
+        along_.push_back(axis.along);
     }
+    if (shape.by_sensor) tables_ = static_cast<std::size_t>(subject.sensors);
+    if (shape.by_run && !subject.run.empty()) tables_ = *std::ranges::max_element(subject.run) + 1;
 }
 
 std::size_t TableBasis::table_of(const Subject& subject, std::size_t i) const {
@@ -113,27 +132,9 @@ std::size_t TableBasis::table_of(const Subject& subject, std::size_t i) const {
     return shape_.by_sensor ? static_cast<std::size_t>(subject.sensor[i]) : 0;
 }
 
-MomentWeights TableBasis::of_moment(const Subject& subject, std::size_t m) const {
-    MomentWeights own;
-    own.weight[0] = subject.weight[m];
-    if (shape_.times >= 0)
-        own.weight[0] *= subject.covariates[static_cast<std::size_t>(shape_.times)].value[m];
-    std::size_t corners = 1;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-        const auto& at = places_[k];
-        const double value = std::clamp(subject.covariates[shape_.over[k]].value[m], at.front(), at.back());
-        const auto above = std::clamp<std::size_t>(
-            static_cast<std::size_t>(std::ranges::upper_bound(at, value) - at.begin()), 1, at.size() - 1);
-        const double share = (value - at[above - 1]) / (at[above] - at[above - 1]);
-        for (std::size_t c = 0; c < corners; ++c) {
-            own.at[c + corners] = own.at[c] * at.size() + above;
-            own.weight[c + corners] = own.weight[c] * share;
-            own.at[c] = own.at[c] * at.size() + above - 1;
-            own.weight[c] *= 1 - share;
-        }
-        corners *= 2;
-    }
-    return own;
+TableBasis::Found TableBasis::found(const Subject& subject, std::size_t axis, std::size_t m) const {
+    const auto [above, share] = place_of(places_[axis], subject.covariates[shape_.over[axis]].value[m]);
+    return {above, share};
 }
 
 Eigen::MatrixXd TableBasis::root(const Kernel& kernel) const {

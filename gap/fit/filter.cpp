@@ -155,7 +155,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             const double guess = first.guess / sd, unsure = unsure_of(first.rows, noise.memory);
             walk.begin(error, guess, unsure);
             lever.begin(of_row(p.lever, i) / sd, p.lever_sd * p.lever_sd);
-            if (pushes) pushed.begin(error, guess, unsure, lever);
+            if (pushes) pushed.begin(error, guess, unsure, levered ? &lever : nullptr);
             const bool plain = first.rows > 1;
             out.role[i] = plain ? RowRole::Plain : RowRole::First;
             out.z[i] = error - guess;

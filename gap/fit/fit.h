@@ -42,6 +42,9 @@ struct Effort {
 };
 inline constexpr Effort kThorough{}, kQuick{.iterations = 6}, kPart{.iterations = 6, .noise = false},
     kGlance{.iterations = 2};
+/// Of what is reported of runs that had no part in it: everything is fitted to the others, noise and
+/// nuisances as well, so that where the fit to all rows ended is a start and no more.
+inline constexpr Effort kHeldOut{.iterations = 12};
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
            const Effort& effort = kThorough);

@@ -27,6 +27,8 @@ constexpr std::size_t kRefined = 5;       // best by a quick fit that are fitted
 constexpr std::size_t kLookedAt = 7;      // best on a part of many rows that are fitted to all
 constexpr double kHopeless = 60.0;        // of BIC, by a quick fit: not fitted to the end
 constexpr double kGlimpse = 0.125;        // of kPromising, nats that a pair wins at a glance (half is due)
+constexpr double kLeastGlimpse = 1.5;     // nats of a part's rows, likewise: less is what any number gains
+constexpr std::size_t kPairsOfMany = 2;   // best on a part of many rows that are fitted to all
 constexpr std::size_t kPaired = 6;        // best alone that are tried two by two where none is enough
 constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
 
@@ -145,18 +147,54 @@ class Search::Steps {
         double alone;
     };
     /// Both fitted quickly where a glance promises something, the best first.
-    std::vector<TriedSet> together(const std::vector<Pair>& pairs) const {
+    std::vector<TriedSet> together(std::vector<Pair> pairs) const {
+        if (study_.part() != nullptr) pairs = promising_on_part(pairs);
         std::vector<TriedSet> all(pairs.size());
         in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
             const State& from = pairs[k].first->fitted.state;
             const auto set = with(pairs[k].first->effects, pairs[k].second);
-            if (study_.glance(set, from) < kGlimpse * kPromising) return;
+            if (study_.part() == nullptr && study_.glance(set, from) < kGlimpse * kPromising) return;
             Fit fit = study_.fit_set(set, from, kQuick);
             all[k] = {pairs[k].alone - fit.bic, std::move(fit)};
         });
         std::erase_if(all, [](const TriedSet& one) { return one.fit.effects.empty(); });
         best_first(all);
         return all;
+    }
+
+    /// Of many rows: the pairs that a part of them speaks for most, if it speaks for them at all.
+    std::vector<Pair> promising_on_part(const std::vector<Pair>& pairs) const {
+        const Study& part = *study_.part();
+        const double rows = static_cast<double>(study_.rows()),
+                     share = static_cast<double>(part.rows()) / rows;
+        const double glimpse = std::max(share * kGlimpse * kPromising, kLeastGlimpse);
+        std::map<const Fit*, Fit> firsts;  // on the part
+        for (const Pair& pair : pairs)
+            if (!firsts.contains(pair.first)) firsts[pair.first] = study_.on_part(*pair.first);
+        std::vector<double> won(pairs.size(), -INFINITY);
+        in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
+            const Fit& first = firsts.at(pairs[k].first);
+            const auto set = with(first.effects, pairs[k].second);
+            if (!part.candidates()[pairs[k].second].remark.empty()) {
+                if (study_.glance(set, pairs[k].first->fitted.state) >= kGlimpse * kPromising)
+                    won[k] = INFINITY;
+                return;
+            }
+            if (part.glance(set, first.fitted.state) < glimpse) return;
+            const Fit both = part.fit_set(set, first.fitted.state, kQuick);
+            // As all rows would have it.
+            won[k] = 2 * (both.fitted.log_likelihood - first.fitted.log_likelihood) / share -
+                     static_cast<double>(both.freed.size() - first.freed.size()) * std::log(rows);
+        });
+        std::vector<std::size_t> order(pairs.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::erase_if(order, [&](std::size_t k) { return won[k] < kScreen; });
+        std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t k) { return won[k]; });
+        if (order.size() > kPairsOfMany) order.resize(kPairsOfMany);
+        std::vector<Pair> best;
+        for (const std::size_t k : order)
+            best.push_back(pairs[k]);
+        return best;
     }
 
     /// `state` with an effect where it stood when it was tried alone: beside another, a fit from nothing may

@@ -3,8 +3,9 @@
 // Variances in units of the error's.
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace puckloop::gap {
 
@@ -118,7 +119,8 @@ class PushedWalk {
         double off;         ///< from where the row before had it go on, the mean over histories
     };
 
-    void begin(double value, double guess, double unsure, const Lever& lever);
+    /// `lever`: null where nothing acts on the rows by one.
+    void begin(double value, double guess, double unsure, const Lever* lever);
     /// How likely a row was pushed, and by how much: mean and variance.
     struct Push {
         double chance, mean, variance;
@@ -129,13 +131,17 @@ class PushedWalk {
     double pushed(unsigned back) const;
 
   private:
+    static constexpr std::size_t kHistories = 5;
     struct History {
         Walk walk;
         Lever lever;
         double weight;
         std::uint32_t pushed;  ///< a bit for each of the last rows, the last one lowest
     };
-    std::vector<History> kept_, next_;
+    std::array<History, kHistories> kept_{};  ///< the likeliest first
+    std::array<History, 2 * kHistories> next_{};
+    std::size_t count_ = 0;
+    bool levered_ = false;
     double tail_ = 0.0, normal_ = 1.0;  ///< degrees of freedom, and a normal law's constant over theirs
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kDrift = 1;                                   // of the noise's numbers (noise.h)
 constexpr Effort kCalm{.iterations = 40, .wander = false};  // to the end, nothing let wander
-constexpr Effort kAgain{.iterations = 12}, kCalmAgain{.iterations = 12, .wander = false};
+constexpr Effort kCalmAgain{.iterations = 12, .wander = false};
 
 /// The fit again, with nothing let wander.
 Fit calmed(const Study& study, const Fit& fit) {
@@ -46,7 +46,7 @@ std::vector<Leftover> wandering(const Study& study, const Fit& fit) {
     std::vector<Leftover> all;
     if (steady == 0) return all;
     // How much sums may wander is learnt from the other runs, too: else it would have seen what it predicts.
-    const HeldOut held = study.hold_out(fit, kAgain), calm = study.hold_out(calmed(study, fit), kCalmAgain);
+    const HeldOut held = study.hold_out(fit, kHeldOut), calm = study.hold_out(calmed(study, fit), kCalmAgain);
     for (std::size_t o = 0; o < observables.size(); ++o) {
         if (!observables[o].steady) continue;
         const Gain gain = study.gain(calm, held, o);

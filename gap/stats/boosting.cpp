@@ -6,8 +6,10 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace puckloop::gap::stats {
 
@@ -188,9 +190,10 @@ class Booster {
         std::vector<Eigen::VectorXd> moves(components_.size());
         design_.gather(
             rest_, [this](std::size_t i) { return learns(i); }, pulled_);
+        sum_pulls();
         for (const std::size_t g : view_) {
             if (inverse_[g].size() == 0) continue;
-            const Eigen::VectorXd pull = pull_of(components_[g]);
+            const Eigen::Map<const Eigen::VectorXd> pull(pulls_[g].data() + 1, components_[g].cells);
             moves[g] = inverse_[g] * pull;
             won.emplace_back(2 * moves[g].dot(pull) - moves[g].dot(gram_[g] * moves[g]), g);
         }
@@ -227,13 +230,43 @@ class Booster {
   private:
     bool learns(std::size_t i) const { return design_.used(i) && fold_[i] != held_; }
 
-    /// How the rows pull at each cell.
-    Eigen::VectorXd pull_of(const Component& c) {
-        pulls_.assign(static_cast<std::size_t>(c.cells) + 1, 0.0);
-        double* const at = pulls_.data() + 1;  // the first is of rows without a cell
-        for (std::size_t i = 0; i < pulled_.size(); ++i)
-            at[c.cell[i]] += weight_of(c, i) * pulled_[i];
-        return Eigen::Map<const Eigen::VectorXd>(at, c.cells);
+    /// How the rows pull at each cell of what is in view. Rows in turn mostly lie in one cell, whose sum each
+    /// has to wait for: several components at a time wait together.
+    void sum_pulls() {
+        pulls_.resize(components_.size());
+        std::vector<std::size_t> even, weighted;
+        for (const std::size_t g : view_)
+            if (inverse_[g].size() != 0) (components_[g].weight.empty() ? even : weighted).push_back(g);
+        constexpr std::size_t kTogether = 4;
+        for (const bool weigh : {false, true}) {
+            const auto& all = weigh ? weighted : even;
+            std::size_t k = 0;
+            for (; k + kTogether <= all.size(); k += kTogether)
+                weigh ? sum_together<true, kTogether>(&all[k]) : sum_together<false, kTogether>(&all[k]);
+            for (; k < all.size(); ++k)
+                weigh ? sum_together<true, 1>(&all[k]) : sum_together<false, 1>(&all[k]);
+        }
+    }
+
+    template <bool weigh, std::size_t count>
+    void sum_together(const std::size_t* which) {
+        std::array<double*, count> at;
+        std::array<const int*, count> cell;
+        std::array<const double*, count> weight;
+        for (std::size_t k = 0; k < count; ++k) {
+            const Component& c = components_[which[k]];
+            pulls_[which[k]].assign(static_cast<std::size_t>(c.cells) + 1, 0.0);
+            at[k] = pulls_[which[k]].data() + 1;  // the first is of rows without a cell
+            cell[k] = c.cell.data();
+            weight[k] = c.weight.data();
+        }
+        const auto add = [&]<std::size_t... k>(std::index_sequence<k...>) {
+            for (std::size_t i = 0; i < pulled_.size(); ++i) {
+                const double pull = pulled_[i];
+                ((at[k][cell[k][i]] += weigh ? weight[k][i] * pull : pull), ...);
+            }
+        };
+        add(std::make_index_sequence<count>());
     }
 
     const Design& design_;
@@ -246,7 +279,8 @@ class Booster {
     std::vector<Eigen::MatrixXd> gram_, inverse_;
     std::vector<Eigen::VectorXd> values_;
     std::vector<std::size_t> view_;
-    std::vector<double> pulled_, pulls_;
+    std::vector<double> pulled_;
+    std::vector<std::vector<double>> pulls_;  // a component each
 };
 
 }  // namespace

@@ -161,7 +161,8 @@ void analyse_folder(const FitRequest& request) {
                      {"overlay.toml", "gap.json", "report.html", "predictive.svg"});
     }
     const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
-    gap::Options options{request.seed, threads, progress_line(gap::expected_seconds(experiment, threads))};
+    gap::Options options{request.seed, threads,
+                         progress_line(gap::expected_time(experiment, threads).something)};
     const auto begun = std::chrono::steady_clock::now();
     gap::Verdict verdict = gap::analyse(experiment, options);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;

@@ -154,7 +154,9 @@ TEST_CASE("places are where rows are and all over the range, whatever strays", "
     for (std::size_t i = 0; i < speed.size(); ++i)
         if (i % 2 == 0) speed[i] = 0.05;  // a crowd
     speed[1] = 5.0;                       // a stray value
-    const TableBasis basis(subject, {{0}}, runs_below(subject, 10), 32);
+    const auto used = runs_below(subject, 10);
+    LaidAxes axes(subject, used);
+    const TableBasis basis(axes, {{0}}, 32);
     const auto& at = basis.places()[0];
     CHECK(at.front() < -0.08);
     CHECK(at.back() == 5.0);

@@ -74,7 +74,9 @@ double misfit_of(const std::string& quantity, const std::string& over,
     const auto found = std::ranges::find(without[s].covariates, over, &WorldCovariate::name);
     REQUIRE(found != without[s].covariates.end());
     const TableShape shape{{static_cast<std::size_t>(found - without[s].covariates.begin())}};
-    const TableBasis basis(without[s], shape, std::vector<char>(without[s].error.size(), 1), 60);
+    const std::vector<char> all(without[s].error.size(), 1);
+    LaidAxes axes(without[s], all);
+    const TableBasis basis(axes, shape, 60);
     physics::ExtensionTerm term{quantity, -1, {}, {{over, basis.places()[0]}}};
     for (const double at : basis.places()[0])
         term.value.push_back(value(at));
