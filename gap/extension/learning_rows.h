@@ -14,7 +14,7 @@ struct LearningRows {
     std::vector<double> error;     ///< 0 where it is not known
     std::vector<char> starts, known;
 
-    /// Row `i` of the subject; `follows`: it comes behind the last one.
+    /// Row `i` of the subject; `follows`: it comes after the last one.
     void add(const Subject& subject, std::size_t i, bool follows);
 };
 

@@ -210,6 +210,7 @@ class Arena {
         if (!controller.cameras.empty()) program.texts("cameras", controller.cameras);
         robot.table("linux", program);
         ircom_ = ircom_ || controller.ircom;
+        robots_ = true;
         return robot;
     }
 
@@ -218,7 +219,6 @@ class Arena {
         const std::string name = robot_name(file_, node, file_.text(node, "id"));
         const Pose pose = pose_of(node);
         if (mission_places()) return take_for_mission(controller, name, file_.line_of(node));
-        robots_ = true;
         Tree robot = robot_tree(file_.line_of(node), controller);
         robot.text("name", name)
             .lengths("position", {pose.x, pose.y})
@@ -228,18 +228,13 @@ class Arena {
 
     /// The loop functions of a mission move robots from wherever they were put.
     void take_for_mission(const Controller& controller, const std::string& name, int line) {
-        robots_ = true;
-        placed_[controller.id].push_back(name);
-        placed_line_.try_emplace(controller.id, line);
-        templates_.try_emplace(controller.id, controller);
+        placed_.try_emplace(controller.id, Placed{controller, line, {}}).first->second.names.push_back(name);
     }
 
     void add_distributed(pugi::xml_node node) {
         const pugi::xml_node entity = node.child("entity"), robot = entity.child("e-puck");
-        if (!robot || !mission_places()) {
-            robots_ = robots_ || robot;
+        if (!robot || !mission_places())
             return add_distribution(file_, node, controllers_, robot_template(), root_);
-        }
         const Distributed wanted = distributed(file_, entity);
         const Controller& controller = controllers_.of_robot(robot);
         const std::string name = robot_name(file_, robot, file_.text(robot, "id"));
@@ -270,11 +265,11 @@ class Arena {
                 "the loop functions place the robots: here they are drawn in a disc of {:.4g} m, and nothing "
                 "else of the loop functions is executed",
                 mission_.radius));
-        for (const auto& [id, names] : placed_) {
-            const int line = placed_line_.at(id);
-            Tree group = robot_tree(line, templates_.at(id));
-            group.texts("names", names);
-            group.table("place", Tree(line).text("kind", "disc").quantity("radius", mission_.radius, "m"));
+        for (const auto& [id, placed] : placed_) {
+            Tree group = robot_tree(placed.line, placed.controller);
+            group.texts("names", placed.names);
+            group.table("place",
+                        Tree(placed.line).text("kind", "disc").quantity("radius", mission_.radius, "m"));
             root_.add("group", group);
         }
     }
@@ -313,9 +308,13 @@ class Arena {
     pugi::xml_node node_;
     double width_ = 0.0, depth_ = 0.0, x_ = 0.0, y_ = 0.0;
     LoopPlaces mission_;
-    std::map<std::string, std::vector<std::string>> placed_;  // names by controller
-    std::map<std::string, int> placed_line_;
-    std::map<std::string, Controller> templates_;
+    /// Robots of one controller that the mission places.
+    struct Placed {
+        Controller controller;
+        int line = 0;  // of the first
+        std::vector<std::string> names;
+    };
+    std::map<std::string, Placed> placed_;  // by the controller's id
     bool floor_done_ = false, ircom_ = false;
     bool robots_ = false;  // or TAMs, are there
 };

@@ -11,7 +11,7 @@ namespace puckloop::argos {
 namespace {
 
 constexpr double kThickness = 0.01, kHeight = 0.1;  // m, of a built wall
-constexpr double kFreeOfWalls = 0.1;                // m, published: "avoids to place robots close the walls"
+constexpr double kFreeOfWalls = 0.1;                // m; published loop functions have 0.1 or 0.65
 constexpr long long kMostRobots = 1000;
 
 /// A regular polygon about the origin, the first wall across the x axis; the distance from there to a wall,

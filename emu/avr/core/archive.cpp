@@ -1,5 +1,5 @@
 // What a core remembers, listed once for saving and loading (base/states/archive.h). Decoded operations and
-// what is known about loops are found anew.
+// what is known about loops are found again.
 
 #include "emu/avr/core/core.h"
 #include "emu/avr/machine/machine.h"

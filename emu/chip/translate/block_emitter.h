@@ -60,11 +60,11 @@ class BlockEmitter : protected Xbyak::CodeGenerator {
     virtual void emit_head(Xbyak::Label&) {}
     /// More operations may follow those so far.
     virtual bool goes_on() const = 0;
-    /// The operation at index_: its code, and all counts behind it. Unknown: it emitted nothing.
+    /// The operation at index_: its code, and all counts after it. Unknown: it emitted nothing.
     virtual Flow emit_next() = 0;
     /// Flags and counts, as they are at this point, to where everybody finds them.
     virtual void settle() = 0;
-    /// Brings the translator back to this point; for what is emitted behind the block.
+    /// Brings the translator back to this point; for what is emitted after the block.
     virtual std::function<void()> point() = 0;
 
     /// Translates from program word `index` on, up to index_. False if not even one operation could be.
@@ -73,7 +73,7 @@ class BlockEmitter : protected Xbyak::CodeGenerator {
     /// The instruction cannot be finished here: the label leads out before it. Nothing has changed yet.
     Xbyak::Label& bail();
     void finish_bail();
-    /// What is to be emitted behind the block, as of this point.
+    /// What is to be emitted after the block, as of this point.
     void cold(const Xbyak::Label& label, std::function<void()> emit);
     /// A way out before the present instruction, nothing of it having happened.
     void leave_unchanged();

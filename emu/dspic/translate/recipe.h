@@ -71,7 +71,7 @@ struct Recipe {
         Kind kind{};
         bool byte = false;                        ///< the outcome has eight bits
         std::uint8_t place = 0;                   ///< Register: its number; Cell: the access
-        bool second = false;                      ///< Cell: the word behind the address
+        bool second = false;                      ///< Cell: the next word after the address
         bool signed_a = false, signed_b = false;  ///< of products
         Value a{}, b{};
         Bit in{};
@@ -91,7 +91,7 @@ struct Recipe {
     struct Effect {
         bool to_memory = false;
         std::uint8_t place = 0;  ///< the register, or the access
-        bool second = false;     ///< the word behind the address
+        bool second = false;     ///< the next word after the address
         bool byte = false;
         Value value;
     };

@@ -11,7 +11,7 @@
 namespace puckloop::scenarios {
 
 /// The [[event]] tables of the file are in place of the scenario's; its [[fault]] tables, which a run
-/// that a client drove had besides, come behind the scenario's. There is nothing else in such a file. What
+/// that a client drove had besides, come after the scenario's. There is nothing else in such a file. What
 /// events name is checked by physics::check_events(), later. Throws InputError.
 void apply_event_file(const std::filesystem::path& file, Scenario& scenario);
 
